@@ -1,0 +1,24 @@
+//! What is wrong with a user's input: place, finding, expectation.
+
+use std::fmt::Display;
+
+/// A file at fault, told the way a person can act on it.
+///
+/// `place` names the file and the line, column or key; `found` what stands there; `expected` what should.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: found {found}, expected {expected}")]
+pub struct InputError {
+    /// File, and line, column or key where there is one.
+    pub place: String,
+    /// What stands there.
+    pub found: String,
+    /// What was expected instead.
+    pub expected: String,
+}
+
+impl InputError {
+    /// An error at `place`.
+    pub fn new(place: impl Display, found: impl Display, expected: impl Display) -> Self {
+        Self { place: place.to_string(), found: found.to_string(), expected: expected.to_string() }
+    }
+}
