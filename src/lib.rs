@@ -1,3 +1,98 @@
-//! Placeholder of the first commit.
+//! How stiff and how damped is what a tool touches? `F = K x + B v`, identified sample by sample.
+//!
+//! `no_std`, no allocation, no panic, bounded work: made to run in the 1 kHz interrupt of a motor drive (Cortex-M4F), and
+//! bit for bit the same on a host.
+//!
+//! ```
+//! use palpate::{BlockConfig, BlockLeastSquares, Identifier, Sample, StreamConfig};
+//!
+//! let law = BlockLeastSquares::new(BlockConfig::default())?;
+//! let mut identifier = Identifier::<_, 300>::new(StreamConfig::BENCH, law)?;
+//! # let mut last = None;
+//! for k in 0..400 {
+//!     // In the interrupt: read the sensors (SI, penetration positive into the surface), then
+//!     let t = k as f32 * 1e-3;
+//!     let (x, v) = (0.010 + 0.003 * (63.0 * t).sin(), 0.189 * (63.0 * t).cos());
+//!     let sample = Sample { position: x, force: 300.0 * x + 5.0 * v, elapsed: 1e-3 };
+//!     match identifier.update(sample) {
+//!         Ok(estimate) => { /* estimate.impedance, .half_width, .flags */
+//! #           last = Some(estimate);
+//!         }
+//!         Err(rejection) => { /* a bad sample, and why: nothing has changed */
+//! #           panic!("{rejection:?}");
+//!         }
+//!     }
+//! }
+//! # let K = last.unwrap().impedance.stiffness;
+//! # assert!((K / 300.0 - 1.0).abs() < 0.01, "{K}");
+//! # Ok::<(), palpate::ConfigError>(())
+//! ```
+//!
+//! # Map
+//!
+//! | module | what |
+//! |---|---|
+//! | [`Sample`], [`Impedance`] | the model, its units and signs |
+//! | [`FrontEnd`] | penetration, velocity, contact gate; rejection of bad samples |
+//! | [`Ewrls`], [`Sprls`], [`ResetRls`], [`Gradient`] | recursive laws |
+//! | [`BlockLeastSquares`], [`BlockLeastMeanSquare`], [`BlockLeastMeanFourth`] | laws on a window |
+//! | [`Estimate`], [`Flags`] | the answer and its quality |
+//! | [`Identifier`] | all of it for one law |
+//! | [`Bench`] | all laws side by side |
+//!
+//! Equation numbers are those of the paper that compared the laws on a one-degree-of-freedom bench.
+
 #![no_std]
 #![forbid(unsafe_code)]
+
+mod bench;
+mod block;
+mod block_lmf;
+mod block_lms;
+mod block_ls;
+mod confidence;
+mod contact;
+mod covariance;
+pub mod cubic;
+mod error;
+mod estimate;
+mod ewrls;
+mod filter;
+mod front_end;
+mod gate;
+mod gradient;
+mod identifier;
+mod law;
+pub mod math;
+mod recursive;
+mod reset_rls;
+mod sprls;
+mod stream;
+mod sym2;
+mod units;
+mod window;
+
+pub use bench::{BENCH_WINDOW, Bench, BenchConfig, BenchEstimates, Method, Methods};
+pub use block::{BlockConfig, BlockState};
+pub use block_lmf::{BlockLeastMeanFourth, Direction, LineSearch};
+pub use block_lms::BlockLeastMeanSquare;
+pub use block_ls::BlockLeastSquares;
+pub use confidence::{Confidence, Ignorance, Propagation};
+pub use contact::{Impedance, Observation, Sample};
+pub use covariance::Covariance;
+pub use error::ConfigError;
+pub use estimate::{Assessor, Estimate, Flags, Sensors};
+pub use ewrls::{Ewrls, EwrlsConfig};
+pub use filter::{LowPass, LowPassState};
+pub use front_end::{Field, FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection, Velocity};
+pub use gate::{GateConfig, GateState};
+pub use gradient::{Gradient, GradientConfig, GradientState};
+pub use identifier::Identifier;
+pub use law::{Law, Step};
+pub use recursive::RecursiveState;
+pub use reset_rls::{ResetRls, ResetRlsConfig, ResetRlsState};
+pub use sprls::{Sprls, SprlsConfig, SprlsState};
+pub use stream::{ContactLoss, Event, Stream, StreamConfig, Tracker};
+pub use sym2::Sym2;
+pub use units::Units;
+pub use window::{Recent, Window};

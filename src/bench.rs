@@ -1,0 +1,203 @@
+//! All estimators side by side on one stream: what `palpate replay` runs on the host and the bench image on the device.
+
+use crate::block::BlockConfig;
+use crate::block_lmf::{BlockLeastMeanFourth, Direction};
+use crate::block_lms::BlockLeastMeanSquare;
+use crate::block_ls::BlockLeastSquares;
+use crate::contact::Sample;
+use crate::error::{ConfigError, require};
+use crate::estimate::Estimate;
+use crate::ewrls::{Ewrls, EwrlsConfig};
+use crate::front_end::Rejection;
+use crate::gradient::{Gradient, GradientConfig};
+use crate::reset_rls::{ResetRls, ResetRlsConfig};
+use crate::sprls::{Sprls, SprlsConfig};
+use crate::stream::{Stream, StreamConfig, Tracker};
+use serde::{Deserialize, Serialize};
+
+/// An estimator by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[repr(u8)]
+pub enum Method {
+    /// Recursive least squares.
+    Rls,
+    /// Exponentially weighted recursive least squares.
+    Ewrls,
+    /// Self-perturbing recursive least squares.
+    Sprls,
+    /// Recursive least squares with covariance resetting.
+    ResetRls,
+    /// Constant-gain gradient law.
+    Gradient,
+    /// Block least squares.
+    Bls,
+    /// Block least mean square.
+    Blms,
+    /// Block least mean fourth along the steepest descent.
+    Blmf,
+    /// Block least mean fourth along the Newton direction.
+    NewtonBlmf,
+}
+
+impl Method {
+    /// All of them, in the order of [`BenchEstimates`].
+    pub const ALL: [Self; 9] = [
+        Self::Rls,
+        Self::Ewrls,
+        Self::Sprls,
+        Self::ResetRls,
+        Self::Gradient,
+        Self::Bls,
+        Self::Blms,
+        Self::Blmf,
+        Self::NewtonBlmf,
+    ];
+
+    /// The name on the command line and in file columns.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rls => "rls",
+            Self::Ewrls => "ewrls",
+            Self::Sprls => "sprls",
+            Self::ResetRls => "reset_rls",
+            Self::Gradient => "gradient",
+            Self::Bls => "bls",
+            Self::Blms => "blms",
+            Self::Blmf => "blmf",
+            Self::NewtonBlmf => "newton_blmf",
+        }
+    }
+
+    /// The name in words.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Rls => "recursive least squares",
+            Self::Ewrls => "exponentially weighted recursive least squares",
+            Self::Sprls => "self-perturbing recursive least squares",
+            Self::ResetRls => "recursive least squares with covariance resetting",
+            Self::Gradient => "constant-gain gradient law",
+            Self::Bls => "block least squares",
+            Self::Blms => "block least mean square",
+            Self::Blmf => "block least mean fourth",
+            Self::NewtonBlmf => "block least mean fourth, Newton direction",
+        }
+    }
+
+    const fn bit(self) -> u16 {
+        1 << self as u8
+    }
+}
+
+/// A set of methods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Methods(u16);
+
+impl Methods {
+    /// With `method` in it.
+    #[must_use]
+    pub const fn with(self, method: Method) -> Self {
+        Self(self.0 | method.bit())
+    }
+
+    /// Whether `method` is in it.
+    pub const fn contains(self, method: Method) -> bool {
+        self.0 & method.bit() != 0
+    }
+}
+
+/// Settings of a [`Bench`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BenchConfig {
+    /// What all share.
+    pub stream: StreamConfig,
+    /// Which of them run.
+    pub methods: Methods,
+    /// Of `rls`.
+    pub rls: EwrlsConfig,
+    /// Of `ewrls`.
+    pub ewrls: EwrlsConfig,
+    /// Of `sprls`.
+    pub sprls: SprlsConfig,
+    /// Of `reset_rls`.
+    pub reset_rls: ResetRlsConfig,
+    /// Of `gradient`.
+    pub gradient: GradientConfig,
+    /// Of all block methods; the window at most [`BENCH_WINDOW`].
+    pub block: BlockConfig,
+}
+
+/// Longest window of a [`Bench`], samples: 24 kB of the 128 kB of an STM32F405.
+pub const BENCH_WINDOW: usize = 2048;
+
+/// One estimate a method of [`Method::ALL`]; [`Estimate::NO_CONTACT`] where the method does not run.
+pub type BenchEstimates = [Estimate; Method::ALL.len()];
+
+/// All methods on one stream.
+#[derive(Debug, Clone)]
+pub struct Bench {
+    methods: Methods,
+    stream: Stream<BENCH_WINDOW>,
+    rls: Tracker<Ewrls>,
+    ewrls: Tracker<Ewrls>,
+    sprls: Tracker<Sprls>,
+    reset_rls: Tracker<ResetRls>,
+    gradient: Tracker<Gradient>,
+    bls: Tracker<BlockLeastSquares>,
+    blms: Tracker<BlockLeastMeanSquare>,
+    blmf: Tracker<BlockLeastMeanFourth>,
+    newton_blmf: Tracker<BlockLeastMeanFourth>,
+}
+
+impl Bench {
+    /// Checks all settings, also of methods that do not run.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: &BenchConfig) -> Result<Self, ConfigError> {
+        require(usize::from(config.block.window) <= BENCH_WINDOW, "window", "at most 2048 samples")?;
+        let fourth = |direction| BlockLeastMeanFourth::new(config.block, direction);
+        Ok(Self {
+            methods: config.methods,
+            stream: Stream::new(config.stream)?,
+            rls: Tracker::new(Ewrls::new(config.rls)?),
+            ewrls: Tracker::new(Ewrls::new(config.ewrls)?),
+            sprls: Tracker::new(Sprls::new(config.sprls)?),
+            reset_rls: Tracker::new(ResetRls::new(config.reset_rls)?),
+            gradient: Tracker::new(Gradient::new(config.gradient)?),
+            bls: Tracker::new(BlockLeastSquares::new(config.block)?),
+            blms: Tracker::new(BlockLeastMeanSquare::new(config.block)?),
+            blmf: Tracker::new(fourth(Direction::SteepestDescent)?),
+            newton_blmf: Tracker::new(fourth(Direction::Newton)?),
+        })
+    }
+
+    /// One sample through every method that runs.
+    ///
+    /// # Errors
+    /// Why the sample was rejected; then nothing but the clock has moved.
+    pub fn update(&mut self, sample: Sample) -> Result<BenchEstimates, Rejection> {
+        let event = self.stream.update(sample)?;
+        let (stream, methods) = (&self.stream, self.methods);
+        Ok(Method::ALL.map(|method| {
+            if !methods.contains(method) {
+                return Estimate::NO_CONTACT;
+            }
+            match method {
+                Method::Rls => self.rls.follow(stream, &event),
+                Method::Ewrls => self.ewrls.follow(stream, &event),
+                Method::Sprls => self.sprls.follow(stream, &event),
+                Method::ResetRls => self.reset_rls.follow(stream, &event),
+                Method::Gradient => self.gradient.follow(stream, &event),
+                Method::Bls => self.bls.follow(stream, &event),
+                Method::Blms => self.blms.follow(stream, &event),
+                Method::Blmf => self.blmf.follow(stream, &event),
+                Method::NewtonBlmf => self.newton_blmf.follow(stream, &event),
+            }
+        }))
+    }
+
+    /// The latest observations, in internal units.
+    pub fn recent(&self) -> crate::Recent<'_> {
+        self.stream.recent()
+    }
+}

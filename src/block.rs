@@ -1,0 +1,179 @@
+//! What the block laws share: the window's sums about the present estimate.
+
+use crate::confidence::Confidence;
+use crate::contact::Impedance;
+use crate::error::{ConfigError, require};
+use crate::estimate::Flags;
+use crate::law::Step;
+use crate::sym2::Sym2;
+use crate::window::Recent;
+use serde::{Deserialize, Serialize};
+
+/// Settings of every block law.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BlockConfig {
+    /// Samples that an estimate rests on, at least 2; at most what the ring holds, or the ring's capacity is the window.
+    pub window: u16,
+    /// Samples below which the estimate is held, at least 2, at most `window`.
+    pub minimum_fill: u16,
+    /// Independence of penetration and rate (determinant over the product of the diagonal) at and below which B is
+    /// held, 1e-6 to 0.1. In single precision the solution loses its last digit at about 1e-6.
+    pub independence_floor: f32,
+}
+
+impl Default for BlockConfig {
+    /// 300 samples, at least 20 of them, 1e-4.
+    fn default() -> Self {
+        Self { window: 300, minimum_fill: 20, independence_floor: 1e-4 }
+    }
+}
+
+impl BlockConfig {
+    /// `window` samples, at least 20 of them (or all, where there are fewer).
+    pub fn of(window: u16) -> Self {
+        Self { window, minimum_fill: window.min(20), ..Self::default() }
+    }
+
+    pub(crate) fn check(self) -> Result<Self, ConfigError> {
+        require(self.window >= 2, "window", "at least 2 samples")?;
+        require(
+            (2..=self.window).contains(&self.minimum_fill),
+            "minimum_fill",
+            "at least 2 samples and at most the window",
+        )?;
+        require((1e-6..=0.1).contains(&self.independence_floor), "independence_floor", "between 1e-6 and 0.1")?;
+        Ok(self)
+    }
+}
+
+/// State of a block law: the window holds all the rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BlockState {
+    /// K and B, internal units.
+    pub estimate: Impedance,
+}
+
+/// Sums over a window of regressors and of the misfit `e = F - phi' theta` of the present estimate. Taken about an
+/// estimate that is near, they lose less to rounding than sums of raw force.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Sums {
+    pub samples: f32,
+    pub regressors: Sym2,
+    pub regressor: Impedance,
+    pub misfit: Impedance,
+    pub misfit_energy: f32,
+    pub largest_misfit: f32,
+}
+
+impl Sums {
+    pub fn over(recent: Recent<'_>, about: Impedance) -> Self {
+        let mut s = Self { samples: recent.len() as f32, ..Self::default() };
+        recent.for_each(|o| {
+            let (x, v, e) = (o.penetration, o.rate, o.misfit(about));
+            s.regressors = s.regressors.plus_outer(1.0, x, v);
+            s.regressor.stiffness += x;
+            s.regressor.damping += v;
+            s.misfit.stiffness += x * e;
+            s.misfit.damping += v * e;
+            s.misfit_energy += e * e;
+            s.largest_misfit = if e.abs() > s.largest_misfit { e.abs() } else { s.largest_misfit };
+        });
+        s
+    }
+}
+
+/// The least-squares solution of a window, as a move from the estimate that the sums were taken about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Solution {
+    pub correction: Impedance,
+    pub inverse: Sym2,
+    pub flags: Flags,
+}
+
+impl Solution {
+    /// Both where the columns are independent, K alone where they are in line, neither where nothing moved.
+    pub fn of(sums: &Sums, independence_floor: f32) -> Self {
+        if let Some(inverse) = sums.regressors.invert(independence_floor) {
+            let correction = inverse.times(sums.misfit);
+            if correction.is_finite() {
+                return Self { correction, inverse, flags: Flags::empty() };
+            }
+        }
+        let stiffness = sums.misfit.stiffness / sums.regressors.xx;
+        if sums.regressors.xx > 0.0 && stiffness.is_finite() {
+            return Self {
+                correction: Impedance { stiffness, damping: 0.0 },
+                inverse: Sym2 { xx: 1.0 / sums.regressors.xx, ..Sym2::UNKNOWN },
+                flags: Flags::DAMPING_HELD,
+            };
+        }
+        Self { correction: Impedance::ZERO, inverse: Sym2::UNKNOWN, flags: Flags::HELD }
+    }
+
+    /// Mean square of the residual that the solution leaves.
+    pub fn residual_variance(&self, sums: &Sums) -> f32 {
+        let explained =
+            self.correction.stiffness * sums.misfit.stiffness + self.correction.damping * sums.misfit.damping;
+        let left = sums.misfit_energy - explained;
+        if left > 0.0 { left / (sums.samples - 2.0).max(1.0) } else { 0.0 }
+    }
+}
+
+impl BlockState {
+    /// Moves the estimate by `step`, or not at all where that would leave the finite numbers; what was done.
+    pub(crate) fn move_by(&mut self, step: Impedance) -> Impedance {
+        let next = self.estimate.moved(1.0, step);
+        if next.is_finite() {
+            self.estimate = next;
+            step
+        } else {
+            Impedance::ZERO
+        }
+    }
+}
+
+/// What an update did, beside the window's sums.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Taken {
+    /// The move of the estimate.
+    pub step: Impedance,
+    /// Newest force minus the prediction before the move.
+    pub innovation: f32,
+    /// Variance per sample of the law's own criterion.
+    pub noise_variance: f32,
+    /// What was out of the ordinary.
+    pub flags: Flags,
+}
+
+impl BlockConfig {
+    /// The outcome of an update that did `taken` where least squares would have moved by `solution.correction`.
+    pub(crate) fn step(&self, state: &BlockState, sums: &Sums, solution: &Solution, taken: Taken) -> Step {
+        Step {
+            estimate: state.estimate,
+            innovation: taken.innovation,
+            confidence: Confidence {
+                noise_variance: taken.noise_variance,
+                noise_gain: solution.inverse,
+                remainder: solution.correction.moved(-1.0, taken.step),
+                offset_gain: solution.inverse.times(sums.regressor),
+                samples: sums.samples,
+                ..Confidence::NONE
+            },
+            fill: sums.samples / f32::from(self.window),
+            excitation: sums.regressors.independence(),
+            flags: taken.flags,
+        }
+    }
+
+    /// The outcome where the window has not enough samples yet.
+    pub(crate) fn too_few(&self, state: &BlockState, recent: Recent<'_>) -> Step {
+        Step {
+            estimate: state.estimate,
+            innovation: recent.newest().unwrap_or_default().misfit(state.estimate),
+            confidence: Confidence::NONE,
+            fill: recent.len() as f32 / f32::from(self.window),
+            excitation: 0.0,
+            flags: Flags::TOO_FEW,
+        }
+    }
+}

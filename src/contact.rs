@@ -1,0 +1,69 @@
+//! The contact model and its sign convention, stated once.
+//!
+//! `F = K x + B v` while the tool is in the surface, else zero. Penetration `x` is positive into the environment, its
+//! rate `v` is positive while the tool moves inward, and the force `F` is positive when the tool pushes. All SI: metre,
+//! metre a second, newton; or, for a rotary joint, radian, radian a second, newton metre.
+
+use serde::{Deserialize, Serialize};
+
+/// One reading of the sensors.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// Tool position along the contact normal, positive into the environment [m or rad].
+    pub position: f32,
+    /// Measured contact force, positive when the tool pushes [N or N m].
+    pub force: f32,
+    /// Time since the sample before, above zero [s].
+    pub elapsed: f32,
+}
+
+/// One row of the regression `F = K x + B v`, in the internal units that [`crate::Units`] sets.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Observation {
+    /// x: depth into the surface.
+    pub penetration: f32,
+    /// v: its rate.
+    pub rate: f32,
+    /// F: the force that the regression explains.
+    pub force: f32,
+}
+
+impl Observation {
+    /// The force that `estimate` predicts here, `K x + B v`.
+    pub fn predicted_by(&self, estimate: Impedance) -> f32 {
+        estimate.stiffness * self.penetration + estimate.damping * self.rate
+    }
+
+    /// Force minus prediction: the innovation where `estimate` is older than this row, else the residual.
+    pub fn misfit(&self, estimate: Impedance) -> f32 {
+        self.force - self.predicted_by(estimate)
+    }
+}
+
+/// What is estimated. Also any pair that has one entry for each of the two.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Impedance {
+    /// K [N/m or N m/rad].
+    pub stiffness: f32,
+    /// B [N s/m or N m s/rad].
+    pub damping: f32,
+}
+
+impl Impedance {
+    /// Nothing is touched.
+    pub const ZERO: Self = Self { stiffness: 0.0, damping: 0.0 };
+
+    /// `self + factor * direction`.
+    #[must_use]
+    pub fn moved(self, factor: f32, direction: Self) -> Self {
+        Self {
+            stiffness: self.stiffness + factor * direction.stiffness,
+            damping: self.damping + factor * direction.damping,
+        }
+    }
+
+    /// Whether both are finite.
+    pub fn is_finite(self) -> bool {
+        self.stiffness.is_finite() && self.damping.is_finite()
+    }
+}

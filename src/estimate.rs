@@ -1,0 +1,189 @@
+//! What the user gets: two numbers, how sure they are, and what to beware of.
+
+use crate::contact::Impedance;
+use crate::error::{ConfigError, require_not_negative};
+use crate::front_end::FrontEnd;
+use crate::law::Step;
+use crate::math::sqrt;
+use serde::{Deserialize, Serialize};
+
+bitflags::bitflags! {
+    /// What was out of the ordinary about an estimate. Empty on a good one.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub struct Flags: u16 {
+        /// The tool touches nothing: K and B read zero.
+        const NO_CONTACT = 1;
+        /// The window or memory is not yet full.
+        const FILLING = 1 << 1;
+        /// Too few samples to solve for two numbers: the estimate is held.
+        const TOO_FEW = 1 << 2;
+        /// Penetration and rate are in line: K alone was updated and B is held.
+        const DAMPING_HELD = 1 << 3;
+        /// No direction could be solved for: both are held.
+        const HELD = 1 << 4;
+        /// The covariance was at its limit: nothing is forgotten while nothing moves.
+        const LIMITED = 1 << 5;
+        /// The interval of K is wider than 30 % of K.
+        const STIFFNESS_UNCERTAIN = 1 << 6;
+        /// The interval of B is wider than 30 % of B.
+        const DAMPING_UNCERTAIN = 1 << 7;
+        /// K or B is negative.
+        const NEGATIVE = 1 << 8;
+        /// The filters began anew at this sample: the first, or after a gap in time.
+        const RESTARTED = 1 << 9;
+        /// The tool moved by fewer than four counts of the position sensor within the memory.
+        const LITTLE_MOVEMENT = 1 << 10;
+        /// The covariance was found unsound and set back to its start.
+        const RESET = 1 << 11;
+    }
+}
+
+/// An estimate with its quality, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// K and B; zero out of contact.
+    pub impedance: Impedance,
+    /// Half-widths of the 95 % intervals; infinite where nothing is known, zero out of contact.
+    pub half_width: Impedance,
+    /// Force minus what the estimate before this sample predicted [N or N m]; out of contact the force itself.
+    pub innovation: f32,
+    /// Share of the window or memory that is filled, 0 to 1.
+    pub fill: f32,
+    /// Independence of penetration and rate, 0 to 1.
+    pub excitation: f32,
+    /// What to beware of.
+    pub flags: Flags,
+}
+
+impl Estimate {
+    /// Something is touched and nothing is known of it.
+    pub const UNKNOWN: Self = Self {
+        half_width: Impedance { stiffness: f32::INFINITY, damping: f32::INFINITY },
+        flags: Flags::HELD,
+        ..Self::NO_CONTACT
+    };
+
+    /// Nothing is touched.
+    pub const NO_CONTACT: Self = Self {
+        impedance: Impedance::ZERO,
+        half_width: Impedance::ZERO,
+        innovation: 0.0,
+        fill: 0.0,
+        excitation: 0.0,
+        flags: Flags::NO_CONTACT,
+    };
+}
+
+/// What the sensors cannot resolve, in SI; zero where it is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Sensors {
+    /// One count of the position sensor [m or rad].
+    pub position_resolution: f32,
+    /// One count of the force sensor [N or N m].
+    pub force_resolution: f32,
+}
+
+impl Sensors {
+    pub(crate) fn check(self) -> Result<(), ConfigError> {
+        require_not_negative(self.position_resolution, "sensors.position_resolution")?;
+        require_not_negative(self.force_resolution, "sensors.force_resolution")
+    }
+}
+
+/// Turns what a law found into an [`Estimate`]: internal to SI, confidence to intervals.
+///
+/// The half-width is `t * sqrt(variance) + |remainder| + |offset_gain * K| * half a count of surface position`, where
+/// the variance is that of [`crate::Confidence`]. The residual is coloured by the filter, so n samples count as n over
+/// `correlated_samples`; t is Student's for that number less two; and the noise is never taken to be less than the
+/// rounding of both sensors. It covers noise, rounding, start-up and a misplaced surface, not the bias of a model or of
+/// [`crate::Velocity::Paper`].
+#[derive(Debug, Clone, Copy)]
+pub struct Assessor {
+    units: crate::Units,
+    correlated_samples: f32,
+    half_count: f32,
+    rounding: Impedance,
+}
+
+impl Assessor {
+    /// Share of the value above which an interval is flagged.
+    const WIDE: f32 = 0.3;
+
+    pub(crate) fn new(front_end: &FrontEnd, sensors: Sensors) -> Self {
+        let units = front_end.config().units;
+        let position = sensors.position_resolution / units.penetration;
+        let force = sensors.force_resolution / units.force;
+        Self {
+            units,
+            correlated_samples: front_end.correlated_samples(),
+            half_count: 0.5 * position,
+            rounding: Impedance { stiffness: position * position / 12.0, damping: force * force / 12.0 },
+        }
+    }
+
+    /// The estimate in SI.
+    pub fn assess(&self, step: &Step) -> Estimate {
+        let half_width = self.half_width(step);
+        let mut flags = step.flags;
+        flags.set(Flags::FILLING, step.fill < 0.99);
+        flags.set(Flags::NEGATIVE, step.estimate.stiffness < 0.0 || step.estimate.damping < 0.0);
+        let wide = |half_width: f32, value: f32| half_width.is_nan() || half_width > Self::WIDE * value.abs();
+        flags.set(Flags::STIFFNESS_UNCERTAIN, wide(half_width.stiffness, step.estimate.stiffness));
+        flags.set(Flags::DAMPING_UNCERTAIN, wide(half_width.damping, step.estimate.damping));
+        Estimate {
+            impedance: self.units.impedance_to_si(step.estimate),
+            half_width: self.units.impedance_to_si(half_width),
+            innovation: step.innovation * self.units.force,
+            fill: step.fill,
+            excitation: step.excitation,
+            flags,
+        }
+    }
+
+    fn half_width(&self, step: &Step) -> Impedance {
+        let c = &step.confidence;
+        let stiffness = step.estimate.stiffness;
+        let rounding = self.rounding.damping + stiffness * stiffness * self.rounding.stiffness;
+        let noise = (c.noise_variance * self.correlated_samples).max(rounding);
+        let t = student(c.samples / self.correlated_samples - 2.0);
+        let surface = stiffness.abs() * self.half_count;
+        let width = |gain: f32, transient: f32, remainder: f32, offset: f32| {
+            let variance = noise * gain + transient;
+            // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
+            let deviation = if variance < 0.0 { 0.0 } else { sqrt(variance) };
+            let width = t * deviation + remainder.abs() + offset.abs() * surface;
+            if width.is_nan() { f32::INFINITY } else { width }
+        };
+        Impedance {
+            stiffness: width(c.noise_gain.xx, c.transient.xx, c.remainder.stiffness, c.offset_gain.stiffness),
+            damping: width(c.noise_gain.vv, c.transient.vv, c.remainder.damping, c.offset_gain.damping),
+        }
+    }
+}
+
+/// The 97.5 % point of Student's distribution within 4 %, infinite below one degree of freedom.
+fn student(freedom: f32) -> f32 {
+    if freedom >= 1.0 {
+        let inverse = 1.0 / freedom;
+        1.96 + inverse * (2.4 + inverse * (2.0 + inverse * 6.3))
+    } else {
+        f32::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quantile_is_that_of_the_printed_tables() {
+        for (freedom, quantile) in
+            [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (5.0, 2.571), (10.0, 2.228), (30.0, 2.042), (1e4, 1.960)]
+        {
+            let error = student(freedom) / quantile - 1.0;
+            assert!(error.abs() < 0.04, "{freedom}: {error}");
+        }
+        assert_eq!(student(0.9), f32::INFINITY);
+        assert_eq!(student(f32::NAN), f32::INFINITY);
+    }
+}

@@ -1,0 +1,102 @@
+//! Recursive least squares, exponentially weighted (EWRLS) or with infinite memory (RLS).
+
+use crate::confidence::Ignorance;
+use crate::error::{ConfigError, require};
+use crate::estimate::Flags;
+use crate::law::{Law, Step};
+use crate::recursive::{RecursiveState, check_ignorance, check_initial_covariance};
+use crate::window::Recent;
+use serde::{Deserialize, Serialize};
+
+/// Settings of [`Ewrls`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EwrlsConfig {
+    /// lambda, above 0.5 and at most 1. Its horizon is 1/(1 - lambda) samples; 1 never forgets and is plain RLS.
+    pub forgetting_factor: f32,
+    /// P(0) = `initial_covariance` * I, above 0, at most 1e8, internal units.
+    pub initial_covariance: f32,
+    /// Bound of the covariance: while nothing moves, forgetting alone would let it grow without end (non-finite after
+    /// 16 to 26 s of a held contact at 0.9967). At least `initial_covariance`, at most 1e9.
+    pub covariance_limit: f32,
+    /// What may be wrong at the start, for the interval.
+    pub ignorance: Ignorance,
+}
+
+impl Default for EwrlsConfig {
+    /// The paper's: forgetting 0.9967 (a horizon of 300 samples), P(0) = 10.
+    fn default() -> Self {
+        Self {
+            forgetting_factor: 0.9967,
+            initial_covariance: 10.0,
+            covariance_limit: 1e6,
+            ignorance: Ignorance::default(),
+        }
+    }
+}
+
+impl EwrlsConfig {
+    /// Plain RLS: nothing is forgotten.
+    pub fn rls() -> Self {
+        Self { forgetting_factor: 1.0, ..Self::default() }
+    }
+}
+
+/// Exponentially weighted recursive least squares.
+///
+/// ```text
+/// s = lambda + phi' P phi,  L = P phi / s,  theta += L e,  P = (P - L phi' P) / lambda
+/// ```
+/// with the innovation `e = F - phi' theta`. It is the minimiser of
+/// `sum lambda^(k-i) (F_i - phi_i' theta)^2 + lambda^k theta' P(0)^-1 theta`.
+#[derive(Debug, Clone, Copy)]
+pub struct Ewrls {
+    config: EwrlsConfig,
+}
+
+impl Ewrls {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: EwrlsConfig) -> Result<Self, ConfigError> {
+        let lambda = config.forgetting_factor;
+        require(lambda > 0.5 && lambda <= 1.0, "forgetting_factor", "above 0.5 and at most 1")?;
+        check_initial_covariance(config.initial_covariance)?;
+        require(
+            config.covariance_limit >= config.initial_covariance && config.covariance_limit <= 1e9,
+            "covariance_limit",
+            "at least initial_covariance and at most 1e9",
+        )?;
+        check_ignorance(config.ignorance)?;
+        Ok(Self { config })
+    }
+}
+
+impl Law for Ewrls {
+    type State = RecursiveState;
+
+    fn start(&self) -> RecursiveState {
+        RecursiveState::new(self.config.initial_covariance, self.config.ignorance)
+    }
+
+    fn forget(&self, state: &mut RecursiveState) {
+        *state = RecursiveState { estimate: state.estimate, ..self.start() };
+    }
+
+    fn window(&self) -> usize {
+        1
+    }
+
+    fn update(&self, state: &mut RecursiveState, recent: Recent<'_>) -> Step {
+        let lambda = self.config.forgetting_factor;
+        let o = recent.newest().unwrap_or_default();
+        let innovation = o.misfit(state.estimate);
+        let mut next = *state;
+        let gain = next.advance(&o, innovation, lambda);
+        let limited = next.covariance.limit(self.config.covariance_limit);
+        let mut flags = state.commit(next);
+        flags.set(Flags::LIMITED, limited);
+        let step = state.step(&o, gain, innovation, lambda);
+        Step { flags, ..step }
+    }
+}

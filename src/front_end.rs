@@ -1,0 +1,217 @@
+//! From sensor readings to rows of the regression: penetration, velocity, contact.
+
+use crate::contact::{Observation, Sample};
+use crate::error::{ConfigError, require, require_positive};
+use crate::filter::{LowPass, LowPassState};
+use crate::gate::{GateConfig, GateState};
+use crate::units::Units;
+use serde::{Deserialize, Serialize};
+
+/// How the rate of penetration is had from the position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Velocity {
+    /// As the paper: the difference of the position, low-passed; position and force stay raw. The filter delays the
+    /// rate against the force, which biases B by -18 to -64 % on the paper's contacts.
+    Paper,
+    /// Penetration, rate and force pass the same filter, so the filter cancels from `F = K x + B v`. Penetration and
+    /// force enter as the mean of two samples, for the difference belongs to the instant half-way between them.
+    #[default]
+    Matched,
+}
+
+/// Settings of the front end, in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FrontEndConfig {
+    /// Nominal sample period [s].
+    pub period: f32,
+    /// Position at which contact begins [m or rad].
+    pub surface: f32,
+    /// Cut-off of the low-pass [Hz], at most 0.4 over `period`.
+    pub cutoff: f32,
+    /// How the rate is had.
+    pub velocity: Velocity,
+    /// Glued or clamped: force both ways, always in contact, and the gate is not asked.
+    pub bilateral: bool,
+    /// Contact thresholds.
+    pub gate: GateConfig,
+    /// Internal units.
+    pub units: Units,
+}
+
+impl FrontEndConfig {
+    /// The paper's bench at 1 kHz, with the matched filter: 20 Hz, SI inside.
+    pub const BENCH: Self = Self {
+        period: 1e-3,
+        surface: 0.0,
+        cutoff: 20.0,
+        velocity: Velocity::Matched,
+        bilateral: false,
+        gate: GateConfig::BENCH,
+        units: Units::SI,
+    };
+}
+
+/// Which field of a sample was at fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Field {
+    /// [`Sample::position`].
+    Position,
+    /// [`Sample::force`].
+    Force,
+    /// [`Sample::elapsed`].
+    Elapsed,
+}
+
+/// Why a sample was rejected as a whole. Nothing but the clock has moved: the next sample's `elapsed` is added to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rejection {
+    /// NaN or infinite.
+    NotFinite(Field),
+    /// Beyond [`FrontEnd::RANGE`] internal units, or a time that does not advance.
+    OutOfRange(Field),
+}
+
+/// What one accepted sample amounts to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// The row of the regression, in internal units.
+    pub observation: Observation,
+    /// The tool is in the surface.
+    pub contact: bool,
+    /// The filters began anew at this sample: it is the first, or comes after a gap. Its rate is not known, so it is no
+    /// row of the regression.
+    pub restarted: bool,
+}
+
+/// The checked settings with what follows from them.
+#[derive(Debug, Clone, Copy)]
+pub struct FrontEnd {
+    config: FrontEndConfig,
+    nominal: LowPass,
+}
+
+/// Filters, gate and the sample before.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FrontEndState {
+    before: Option<(f32, f32)>,
+    skipped: f32,
+    penetration: LowPassState,
+    rate: LowPassState,
+    force: LowPassState,
+    gate: GateState,
+}
+
+impl FrontEnd {
+    /// Largest magnitude of position, force and rate, in internal units: its fourth power is far from overflow.
+    pub const RANGE: f32 = 1e6;
+
+    /// A period within this share of the nominal one is the nominal one (written times are rounded).
+    const SAME_PERIOD: f32 = 1e-4;
+
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: FrontEndConfig) -> Result<Self, ConfigError> {
+        require_positive(config.period, "period")?;
+        require_positive(config.cutoff, "cutoff")?;
+        let cycles = config.cutoff * config.period;
+        require(cycles <= LowPass::LIMIT, "cutoff", "a cut-off of at most 0.4 over the sample period")?;
+        require(cycles >= 1e-6, "cutoff", "a cut-off of at least 1e-6 over the sample period")?;
+        require(config.surface.is_finite(), "surface", "a finite position")?;
+        config.gate.check()?;
+        config.units.check()?;
+        Ok(Self { config, nominal: LowPass::new(cycles) })
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &FrontEndConfig {
+        &self.config
+    }
+
+    /// How many samples in a row one independent value of the filtered noise is worth: sample rate over twice the
+    /// filter's noise bandwidth, at least 1.
+    pub fn correlated_samples(&self) -> f32 {
+        let cycles = self.config.cutoff * self.config.period;
+        (1.0 / (2.0 * LowPass::NOISE_BANDWIDTH * cycles)).max(1.0)
+    }
+
+    /// Takes one sample.
+    ///
+    /// # Errors
+    /// Why it was rejected; then the state is as before, but for the clock.
+    pub fn update(&self, state: &mut FrontEndState, sample: Sample) -> Result<Reading, Rejection> {
+        let (penetration, force) = self.admit(&sample).inspect_err(|_| {
+            if sample.elapsed.is_finite() && sample.elapsed > 0.0 {
+                state.skipped += sample.elapsed;
+            }
+        })?;
+        let elapsed = sample.elapsed + state.skipped;
+        state.skipped = 0.0;
+        let touching = self.config.bilateral
+            || self.config.gate.update(
+                &mut state.gate,
+                penetration * self.config.units.penetration,
+                force * self.config.units.force,
+            );
+        let depth = if self.config.bilateral { penetration } else { penetration.max(0.0) };
+        let before = state.before.replace((depth, force));
+        let filter = self.filter_for(elapsed);
+        let (Some((depth_before, force_before)), Some(filter)) = (before, filter) else {
+            return Ok(self.restart(state, touching, depth, force));
+        };
+        let rate = (depth - depth_before) / elapsed * (self.config.units.penetration / self.config.units.rate);
+        let rate = filter.update(&mut state.rate, rate.clamp(-Self::RANGE, Self::RANGE));
+        let observation = match self.config.velocity {
+            Velocity::Paper => Observation { penetration: depth, rate, force },
+            Velocity::Matched => Observation {
+                penetration: filter.update(&mut state.penetration, 0.5 * (depth + depth_before)),
+                rate,
+                force: filter.update(&mut state.force, 0.5 * (force + force_before)),
+            },
+        };
+        Ok(Reading { observation, contact: touching, restarted: false })
+    }
+
+    /// Penetration and force in internal units.
+    fn admit(&self, sample: &Sample) -> Result<(f32, f32), Rejection> {
+        let fields =
+            [(sample.position, Field::Position), (sample.force, Field::Force), (sample.elapsed, Field::Elapsed)];
+        if let Some((_, field)) = fields.into_iter().find(|(value, _)| !value.is_finite()) {
+            return Err(Rejection::NotFinite(field));
+        }
+        let penetration = (sample.position - self.config.surface) / self.config.units.penetration;
+        let force = sample.force / self.config.units.force;
+        if penetration.abs() > Self::RANGE {
+            Err(Rejection::OutOfRange(Field::Position))
+        } else if force.abs() > Self::RANGE {
+            Err(Rejection::OutOfRange(Field::Force))
+        } else if sample.elapsed <= 0.0 {
+            Err(Rejection::OutOfRange(Field::Elapsed))
+        } else {
+            Ok((penetration, force))
+        }
+    }
+
+    /// The filter for a step of `elapsed` seconds; `None` where the step is a gap that no filter can bridge.
+    fn filter_for(&self, elapsed: f32) -> Option<LowPass> {
+        let period = self.config.period;
+        if (elapsed - period).abs() <= Self::SAME_PERIOD * period {
+            return Some(self.nominal);
+        }
+        let cycles = self.config.cutoff * elapsed;
+        (cycles <= LowPass::LIMIT).then(|| LowPass::new(cycles))
+    }
+
+    /// At rest in the present state: the model holds there with a rate of zero, so no transient follows.
+    fn restart(&self, state: &mut FrontEndState, touching: bool, depth: f32, force: f32) -> Reading {
+        state.penetration = LowPassState::at_rest(depth);
+        state.rate = LowPassState::at_rest(0.0);
+        state.force = LowPassState::at_rest(force);
+        Reading {
+            observation: Observation { penetration: depth, rate: 0.0, force },
+            contact: touching,
+            restarted: true,
+        }
+    }
+}

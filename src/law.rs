@@ -1,0 +1,44 @@
+//! What every estimator is: settings that turn a state and the newest observation into the next estimate.
+
+use crate::confidence::Confidence;
+use crate::contact::Impedance;
+use crate::estimate::Flags;
+use crate::window::Recent;
+
+/// An estimation law. The implementor is the checked configuration; what it has learnt is in `State`.
+///
+/// All numbers are in internal units ([`crate::Units`]). Observations are finite and at most
+/// [`crate::FrontEnd::RANGE`] in size; under that condition no update leaves the state non-finite.
+pub trait Law {
+    /// What is learnt.
+    type State: Clone + core::fmt::Debug;
+
+    /// The state before the first observation of a contact.
+    fn start(&self) -> Self::State;
+
+    /// Forgets what the estimate rests on (covariance, noise, window) but keeps the estimate itself.
+    fn forget(&self, state: &mut Self::State);
+
+    /// How many of the latest observations it looks at; 1 for a recursive law.
+    fn window(&self) -> usize;
+
+    /// One update. The newest of `recent` has not been seen before; the older ones have.
+    fn update(&self, state: &mut Self::State, recent: Recent<'_>) -> Step;
+}
+
+/// What one update found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// The estimate after it.
+    pub estimate: Impedance,
+    /// Newest force minus what the estimate before the update predicted.
+    pub innovation: f32,
+    /// How sure the estimate is.
+    pub confidence: Confidence,
+    /// Share of the window or memory that is filled, 0 to 1.
+    pub fill: f32,
+    /// Independence of penetration and rate in the window or memory, 0 (one line) to 1 (at right angles).
+    pub excitation: f32,
+    /// What was out of the ordinary.
+    pub flags: Flags,
+}

@@ -1,0 +1,89 @@
+//! Recursive least squares with covariance resetting.
+
+use crate::confidence::Ignorance;
+use crate::error::{ConfigError, require};
+use crate::law::{Law, Step};
+use crate::recursive::{RecursiveState, check_ignorance, check_initial_covariance};
+use crate::window::Recent;
+use serde::{Deserialize, Serialize};
+
+/// Settings of [`ResetRls`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ResetRlsConfig {
+    /// Samples from one reset to the next, at least 2.
+    pub reset_interval: u16,
+    /// P(0), and P after each reset, = `initial_covariance` * I, above 0, at most 1e8.
+    pub initial_covariance: f32,
+    /// What may be wrong at the start, for the interval.
+    pub ignorance: Ignorance,
+}
+
+impl Default for ResetRlsConfig {
+    /// A reset every 300 samples, P = 10.
+    fn default() -> Self {
+        Self { reset_interval: 300, initial_covariance: 10.0, ignorance: Ignorance::default() }
+    }
+}
+
+/// RLS without forgetting whose covariance returns to its start every `reset_interval` samples (Goodwin and Sin,
+/// Adaptive Filtering Prediction and Control, 1984, section 3.3): the estimate at the reset is then the prior of what
+/// follows.
+#[derive(Debug, Clone, Copy)]
+pub struct ResetRls {
+    config: ResetRlsConfig,
+}
+
+/// State of [`ResetRls`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResetRlsState {
+    /// Estimate and covariance.
+    pub recursion: RecursiveState,
+    since_reset: u16,
+}
+
+impl ResetRls {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: ResetRlsConfig) -> Result<Self, ConfigError> {
+        require(config.reset_interval >= 2, "reset_interval", "at least 2 samples")?;
+        check_initial_covariance(config.initial_covariance)?;
+        check_ignorance(config.ignorance)?;
+        Ok(Self { config })
+    }
+}
+
+impl Law for ResetRls {
+    type State = ResetRlsState;
+
+    fn start(&self) -> ResetRlsState {
+        let recursion = RecursiveState::new(self.config.initial_covariance, self.config.ignorance);
+        ResetRlsState { recursion, since_reset: 0 }
+    }
+
+    fn forget(&self, state: &mut ResetRlsState) {
+        let start = self.start();
+        let estimate = state.recursion.estimate;
+        *state = ResetRlsState { recursion: RecursiveState { estimate, ..start.recursion }, ..start };
+    }
+
+    fn window(&self) -> usize {
+        1
+    }
+
+    fn update(&self, state: &mut ResetRlsState, recent: Recent<'_>) -> Step {
+        let o = recent.newest().unwrap_or_default();
+        if state.since_reset >= self.config.reset_interval {
+            state.recursion.covariance = state.recursion.start;
+            state.since_reset = 0;
+        }
+        state.since_reset += 1;
+        let innovation = o.misfit(state.recursion.estimate);
+        let mut next = state.recursion;
+        let gain = next.advance(&o, innovation, 1.0);
+        let flags = state.recursion.commit(next);
+        let step = state.recursion.step(&o, gain, innovation, 1.0 - 1.0 / f32::from(self.config.reset_interval));
+        Step { flags, ..step }
+    }
+}

@@ -1,0 +1,125 @@
+//! Self-perturbing recursive least squares (SPRLS).
+
+use crate::confidence::Ignorance;
+use crate::error::{ConfigError, require, require_not_negative};
+use crate::estimate::Flags;
+use crate::law::{Law, Step};
+use crate::recursive::{RecursiveState, check_ignorance, check_initial_covariance};
+use crate::window::Recent;
+use serde::{Deserialize, Serialize};
+
+/// Settings of [`Sprls`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SprlsConfig {
+    /// beta >= 0: size of one step of the kick, internal units (the paper's beta, 100).
+    pub perturbation_gain: f32,
+    /// gamma >= 0: steps of the kick per squared residual, internal units (the paper's gamma, 2 per N^2). Residuals
+    /// below sqrt(0.5 / gamma) do not kick.
+    pub perturbation_sensitivity: f32,
+    /// P(0) = `initial_covariance` * I, above 0, at most 1e8.
+    pub initial_covariance: f32,
+    /// Bound of the covariance, at least `initial_covariance`, at most 1e9.
+    pub covariance_limit: f32,
+    /// What may be wrong at the start, for the interval.
+    pub ignorance: Ignorance,
+}
+
+impl Default for SprlsConfig {
+    /// The paper's: beta 100, gamma 2, P(0) = 10.
+    fn default() -> Self {
+        Self {
+            perturbation_gain: 100.0,
+            perturbation_sensitivity: 2.0,
+            initial_covariance: 10.0,
+            covariance_limit: 1e6,
+            ignorance: Ignorance::default(),
+        }
+    }
+}
+
+/// Recursive least squares without forgetting whose covariance is kicked by its own residual:
+///
+/// ```text
+/// P = P - L phi' P + beta * NINT(gamma e'^2) I
+/// ```
+/// where `e'` is the innovation of the step before (the paper's e(k-1) in the update to k+1), and NINT rounds to the
+/// nearest whole number, halves away from zero.
+#[derive(Debug, Clone, Copy)]
+pub struct Sprls {
+    config: SprlsConfig,
+}
+
+/// State of [`Sprls`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SprlsState {
+    /// Estimate and covariance.
+    pub recursion: RecursiveState,
+    /// Innovation of the update before, zero at the start.
+    pub innovation_before: f32,
+}
+
+impl Sprls {
+    /// The share of the past that the noise figure keeps, a memory of 300 samples: the law has no forgetting factor.
+    const NOISE_FORGETTING: f32 = 1.0 - 1.0 / 300.0;
+
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: SprlsConfig) -> Result<Self, ConfigError> {
+        require_not_negative(config.perturbation_gain, "perturbation_gain")?;
+        require_not_negative(config.perturbation_sensitivity, "perturbation_sensitivity")?;
+        check_initial_covariance(config.initial_covariance)?;
+        require(
+            config.covariance_limit >= config.initial_covariance && config.covariance_limit <= 1e9,
+            "covariance_limit",
+            "at least initial_covariance and at most 1e9",
+        )?;
+        check_ignorance(config.ignorance)?;
+        Ok(Self { config })
+    }
+
+    /// `beta * NINT(gamma e^2)`, bounded by the limit of the covariance.
+    pub fn kick(&self, innovation: f32) -> f32 {
+        let level = self.config.perturbation_sensitivity * innovation * innovation;
+        // From 2^23 on a single-precision number is whole already.
+        let steps = if level < 8_388_608.0 { (level + 0.5) as u32 as f32 } else { level };
+        (self.config.perturbation_gain * steps).min(self.config.covariance_limit)
+    }
+}
+
+impl Law for Sprls {
+    type State = SprlsState;
+
+    fn start(&self) -> SprlsState {
+        let recursion = RecursiveState::new(self.config.initial_covariance, self.config.ignorance);
+        SprlsState { recursion, innovation_before: 0.0 }
+    }
+
+    fn forget(&self, state: &mut SprlsState) {
+        let start = self.start();
+        let estimate = state.recursion.estimate;
+        *state = SprlsState { recursion: RecursiveState { estimate, ..start.recursion }, ..start };
+    }
+
+    fn window(&self) -> usize {
+        1
+    }
+
+    fn update(&self, state: &mut SprlsState, recent: Recent<'_>) -> Step {
+        let o = recent.newest().unwrap_or_default();
+        let innovation = o.misfit(state.recursion.estimate);
+        let mut next = state.recursion;
+        let gain = next.advance(&o, innovation, 1.0);
+        let kick = self.kick(state.innovation_before);
+        if kick > 0.0 {
+            next.covariance.inflate(kick);
+        }
+        let limited = next.covariance.limit(self.config.covariance_limit);
+        let mut flags = state.recursion.commit(next);
+        flags.set(Flags::LIMITED, limited);
+        state.innovation_before = innovation;
+        let step = state.recursion.step(&o, gain, innovation, Self::NOISE_FORGETTING);
+        Step { flags, ..step }
+    }
+}

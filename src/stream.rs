@@ -1,0 +1,185 @@
+//! What all estimators of one contact share: the front end, the ring of observations, the movement seen.
+
+use crate::contact::Sample;
+use crate::error::ConfigError;
+use crate::estimate::{Assessor, Estimate, Flags, Sensors};
+use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection};
+use crate::law::Law;
+use crate::window::{Recent, Window};
+use serde::{Deserialize, Serialize};
+
+/// What a loss of contact makes forgotten.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum ContactLoss {
+    /// Estimate, covariance and window: each contact begins as the first did.
+    #[default]
+    Everything,
+    /// Covariance and window; the next contact begins from the last estimate.
+    Memory,
+    /// Nothing: the next contact goes on where this one ended.
+    Nothing,
+}
+
+/// Settings of a [`Stream`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StreamConfig {
+    /// Position, velocity, contact.
+    pub front_end: FrontEndConfig,
+    /// What the sensors resolve, for the intervals.
+    pub sensors: Sensors,
+    /// What a loss of contact makes forgotten.
+    pub contact_loss: ContactLoss,
+    /// Samples after which a movement is half forgotten, for [`Flags::LITTLE_MOVEMENT`]; at least 1.
+    pub movement_memory: u16,
+}
+
+impl StreamConfig {
+    /// The paper's bench: matched filter, 0.1 mm and 0.05 N a count, everything forgotten at a loss.
+    pub const BENCH: Self = Self {
+        front_end: FrontEndConfig::BENCH,
+        sensors: Sensors { position_resolution: 1e-4, force_resolution: 0.05 },
+        contact_loss: ContactLoss::Everything,
+        movement_memory: 300,
+    };
+}
+
+/// Turns samples into observations and keeps the latest `N`.
+#[derive(Debug, Clone)]
+pub struct Stream<const N: usize> {
+    front_end: FrontEnd,
+    assessor: Assessor,
+    contact_loss: ContactLoss,
+    four_counts: f32,
+    movement_decay: f32,
+    state: FrontEndState,
+    window: Window<N>,
+    in_contact: bool,
+    low: f32,
+    high: f32,
+}
+
+/// What a sample meant to the contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// The reading.
+    pub reading: Reading,
+    /// Contact was lost at this sample.
+    pub lost: bool,
+    /// [`Flags::RESTARTED`] and [`Flags::LITTLE_MOVEMENT`] where they hold.
+    pub flags: Flags,
+}
+
+impl<const N: usize> Stream<N> {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: StreamConfig) -> Result<Self, ConfigError> {
+        let front_end = FrontEnd::new(config.front_end)?;
+        config.sensors.check()?;
+        crate::error::require(config.movement_memory > 0, "movement_memory", "at least 1 sample")?;
+        Ok(Self {
+            front_end,
+            assessor: Assessor::new(&front_end, config.sensors),
+            contact_loss: config.contact_loss,
+            four_counts: 4.0 * config.sensors.position_resolution / config.front_end.units.penetration,
+            movement_decay: core::f32::consts::LN_2 / f32::from(config.movement_memory),
+            state: FrontEndState::default(),
+            window: Window::new(),
+            in_contact: false,
+            low: 0.0,
+            high: 0.0,
+        })
+    }
+
+    /// Takes one sample.
+    ///
+    /// # Errors
+    /// Why it was rejected; then nothing but the clock has moved.
+    pub fn update(&mut self, sample: Sample) -> Result<Event, Rejection> {
+        let reading = self.front_end.update(&mut self.state, sample)?;
+        let mut flags = Flags::empty();
+        flags.set(Flags::RESTARTED, reading.restarted);
+        let lost = self.in_contact && !reading.contact;
+        if reading.contact && !reading.restarted {
+            self.window.push(reading.observation);
+            flags.set(Flags::LITTLE_MOVEMENT, self.movement(reading.observation.penetration) < self.four_counts);
+            self.in_contact = true;
+        }
+        if lost {
+            self.in_contact = false;
+            if self.contact_loss != ContactLoss::Nothing {
+                self.window.clear();
+            }
+        }
+        Ok(Event { reading, lost, flags })
+    }
+
+    /// Peak to peak of the penetration, forgotten slowly towards its middle.
+    fn movement(&mut self, penetration: f32) -> f32 {
+        if !self.in_contact {
+            (self.low, self.high) = (penetration, penetration);
+        }
+        let fade = 0.5 * self.movement_decay * (self.high - self.low);
+        self.low = (self.low + fade).min(penetration);
+        self.high = (self.high - fade).max(penetration);
+        self.high - self.low
+    }
+
+    /// The latest observations of the contact.
+    pub fn recent(&self) -> Recent<'_> {
+        self.window.recent()
+    }
+
+    /// The front end.
+    pub fn front_end(&self) -> &FrontEnd {
+        &self.front_end
+    }
+}
+
+/// One law with what it has learnt.
+#[derive(Debug, Clone)]
+pub struct Tracker<L: Law> {
+    law: L,
+    state: L::State,
+    last: Estimate,
+}
+
+impl<L: Law> Tracker<L> {
+    /// At the start.
+    pub fn new(law: L) -> Self {
+        Self { state: law.start(), law, last: Estimate::UNKNOWN }
+    }
+
+    /// What has been learnt.
+    pub fn state(&self) -> &L::State {
+        &self.state
+    }
+
+    /// Follows `event`, which `stream` has just returned.
+    pub fn follow<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Estimate {
+        if event.lost {
+            match stream.contact_loss {
+                ContactLoss::Everything => self.state = self.law.start(),
+                ContactLoss::Memory => self.law.forget(&mut self.state),
+                ContactLoss::Nothing => {}
+            }
+        }
+        if !event.reading.contact {
+            self.last = Estimate::UNKNOWN;
+            let units = stream.front_end.config().units;
+            return Estimate {
+                innovation: event.reading.observation.force * units.force,
+                flags: Flags::NO_CONTACT | event.flags,
+                ..Estimate::NO_CONTACT
+            };
+        }
+        if event.reading.restarted {
+            return Estimate { innovation: 0.0, flags: self.last.flags | event.flags | Flags::HELD, ..self.last };
+        }
+        let step = self.law.update(&mut self.state, stream.recent());
+        let estimate = stream.assessor.assess(&step);
+        self.last = Estimate { flags: estimate.flags | event.flags, ..estimate };
+        self.last
+    }
+}

@@ -1,0 +1,112 @@
+//! Symmetric 2x2 matrices kept as three numbers, with closed forms for what is asked of them.
+
+use crate::contact::Impedance;
+
+/// `[[xx, xv], [xv, vv]]`; rows and columns belong to penetration (stiffness) and rate (damping).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sym2 {
+    /// Upper left.
+    pub xx: f32,
+    /// Off the diagonal, both times.
+    pub xv: f32,
+    /// Lower right.
+    pub vv: f32,
+}
+
+impl Sym2 {
+    /// All zero.
+    pub const ZERO: Self = Self::diagonal(0.0, 0.0);
+
+    /// Nothing is known: an infinite variance of both.
+    pub const UNKNOWN: Self = Self::diagonal(f32::INFINITY, f32::INFINITY);
+
+    /// `diag(xx, vv)`.
+    pub const fn diagonal(xx: f32, vv: f32) -> Self {
+        Self { xx, xv: 0.0, vv }
+    }
+
+    /// Adds `weight * [x, v] [x, v]'`.
+    #[must_use]
+    pub fn plus_outer(self, weight: f32, x: f32, v: f32) -> Self {
+        let (wx, wv) = (weight * x, weight * v);
+        Self { xx: self.xx + wx * x, xv: self.xv + wx * v, vv: self.vv + wv * v }
+    }
+
+    /// Every entry times `factor`.
+    #[must_use]
+    pub fn scaled(self, factor: f32) -> Self {
+        Self { xx: self.xx * factor, xv: self.xv * factor, vv: self.vv * factor }
+    }
+
+    /// Determinant over the product of the diagonal, `1 - xv^2 / (xx vv)`: 1 for columns at right angles, 0 for columns
+    /// along one line (or a column of zeros). Free of units. Formed from ratios, so nothing underflows.
+    pub fn independence(self) -> f32 {
+        if self.xx > 0.0 && self.vv > 0.0 {
+            let rho = 1.0 - (self.xv / self.xx) * (self.xv / self.vv);
+            if rho > 0.0 { rho } else { 0.0 }
+        } else {
+            0.0
+        }
+    }
+
+    /// Solves `self * y = [a, b]` by eliminating the first column (Schur complement); `None` where
+    /// [`Self::independence`] is at most `floor`. For a positive semidefinite matrix.
+    pub fn solve(self, right: Impedance, floor: f32) -> Option<Impedance> {
+        self.invert(floor).map(|inverse| inverse.times(right))
+    }
+
+    /// The inverse of a positive definite matrix; `None` where [`Self::independence`] is at most `floor`.
+    pub fn invert(self, floor: f32) -> Option<Self> {
+        if self.independence() <= floor {
+            return None;
+        }
+        let ratio = self.xv / self.xx;
+        let vv = 1.0 / (self.vv - ratio * self.xv);
+        let xv = -ratio * vv;
+        let inverse = Self { xx: 1.0 / self.xx - ratio * xv, xv, vv };
+        inverse.is_finite().then_some(inverse)
+    }
+
+    /// `self * right`.
+    pub fn times(self, right: Impedance) -> Impedance {
+        Impedance {
+            stiffness: self.xx * right.stiffness + self.xv * right.damping,
+            damping: self.xv * right.stiffness + self.vv * right.damping,
+        }
+    }
+
+    /// `y' self y`.
+    pub fn quadratic(self, y: Impedance) -> f32 {
+        let image = self.times(y);
+        image.stiffness * y.stiffness + image.damping * y.damping
+    }
+
+    /// Whether all three entries are finite.
+    pub fn is_finite(self) -> bool {
+        self.xx.is_finite() && self.xv.is_finite() && self.vv.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inverse_times_the_matrix_is_one_at_any_scale() {
+        for scale in [1e-18_f32, 1e-6, 1.0, 1e6, 1e15] {
+            let m = Sym2 { xx: 4.0, xv: -1.5, vv: 2.0 }.scaled(scale);
+            let inverse = m.invert(1e-4).expect("well conditioned");
+            let column = m.times(Impedance { stiffness: inverse.xx, damping: inverse.xv });
+            // Three roundings on terms of at most twice the result.
+            assert!((column.stiffness - 1.0).abs() <= 4.0 * f32::EPSILON, "{scale}: {column:?}");
+            assert!(column.damping.abs() <= 4.0 * f32::EPSILON, "{scale}: {column:?}");
+        }
+    }
+
+    #[test]
+    fn columns_on_one_line_are_refused() {
+        assert_eq!(Sym2::ZERO.plus_outer(3.0, 2.0, -1.0).invert(1e-6), None);
+        assert_eq!(Sym2::ZERO.invert(0.0), None);
+        assert_eq!(Sym2 { xx: f32::NAN, xv: 0.0, vv: 1.0 }.invert(0.0), None);
+    }
+}
