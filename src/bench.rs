@@ -99,6 +99,11 @@ impl Methods {
         Self(self.0 | method.bit())
     }
 
+    /// How many are in it.
+    pub const fn count(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
     /// Whether `method` is in it.
     pub const fn contains(self, method: Method) -> bool {
         self.0 & method.bit() != 0

@@ -57,6 +57,7 @@ pub mod cubic;
 mod error;
 mod estimate;
 mod ewrls;
+pub mod exchange;
 mod filter;
 mod front_end;
 mod gate;

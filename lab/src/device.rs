@@ -1,0 +1,147 @@
+//! The bench image: built from the same sources, run under QEMU, fed and read by files.
+
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail, ensure};
+use palpate::exchange::{
+    CONFIG_BYTES, COUNTER_BYTES, Counters, Outcome, decode_counters, decode_record, encode_config, encode_sample,
+    record_bytes,
+};
+use palpate::{BenchConfig, Sample};
+
+use crate::tools;
+
+/// An image that takes no record for this long is given up.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The image and the emulator that runs it.
+pub struct Device {
+    qemu: PathBuf,
+    image: PathBuf,
+}
+
+impl Device {
+    /// Sets up the tools and builds the image.
+    ///
+    /// # Errors
+    /// A tool is missing (as [`tools::Missing`]), the sources are not there, or the build fails.
+    pub fn prepare() -> Result<Self> {
+        tools::cross_target()?;
+        Ok(Self { qemu: tools::qemu()?, image: build("replay")? })
+    }
+
+    /// Feeds `samples` to the image and hands each outcome to `take`, in order. The time is the emulator's own: it sleeps
+    /// through what the core sleeps.
+    ///
+    /// # Errors
+    /// The image or the emulator fails, or returns something else than one record a sample.
+    pub fn run(&self, config: &BenchConfig, samples: &[Sample], mut take: impl FnMut(Outcome)) -> Result<Counters> {
+        let folder = tempfile::tempdir().context("cannot make a folder for the image's files")?;
+        write_input(&folder.path().join("replay.in"), config, samples).context("cannot write the image's input")?;
+        let output = folder.path().join("replay.out");
+        self.emulate(folder.path(), &output)?;
+        let mut records = BufReader::new(File::open(&output).context("the image wrote no output")?);
+        let mut bytes = vec![0; record_bytes(config.methods)];
+        for k in 0..samples.len() {
+            records.read_exact(&mut bytes).with_context(|| format!("the image's output ends at sample {k}"))?;
+            let outcome = decode_record(&bytes, config.methods);
+            take(outcome.with_context(|| format!("the image's record of sample {k} is none"))?);
+        }
+        let mut counters = [0; COUNTER_BYTES];
+        records.read_exact(&mut counters).context("the image's output lacks its counters")?;
+        ensure!(records.read(&mut [0])? == 0, "the image's output goes on after its counters");
+        decode_counters(&counters).context("the image's counters are none")
+    }
+
+    fn emulate(&self, folder: &Path, output: &Path) -> Result<()> {
+        let image = self.image.canonicalize().with_context(|| format!("{} is gone", self.image.display()))?;
+        let mut child = Command::new(&self.qemu)
+            .args(["-machine", "netduinoplus2", "-display", "none", "-monitor", "none", "-serial", "none"])
+            // Eight nanoseconds an instruction, and no waiting for the wall clock while the core sleeps.
+            .args(["-icount", "shift=3,sleep=off", "-semihosting-config", "enable=on,target=native"])
+            .arg("-kernel")
+            .arg(image)
+            .current_dir(folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .with_context(|| format!("cannot run {}", self.qemu.display()))?;
+        let done = wait(&mut child, output);
+        if done.is_err() {
+            // Killing fails only where it has ended by itself.
+            let _ = child.kill();
+        }
+        let ended = child.wait_with_output().context("the emulator cannot be waited for")?;
+        done?;
+        let said = String::from_utf8_lossy(&ended.stderr);
+        ensure!(ended.status.success(), "the image gave up ({}): {}", ended.status, said.trim());
+        Ok(())
+    }
+}
+
+/// Waits for the emulator as long as its output grows.
+fn wait(child: &mut Child, output: &Path) -> Result<()> {
+    let (mut size, mut since) = (0, Instant::now());
+    while child.try_wait().context("the emulator cannot be waited for")?.is_none() {
+        let now = std::fs::metadata(output).map_or(0, |file| file.len());
+        if now > size {
+            (size, since) = (now, Instant::now());
+        }
+        if since.elapsed() > PATIENCE {
+            bail!("the image wrote nothing for {} s", PATIENCE.as_secs());
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    Ok(())
+}
+
+fn write_input(path: &Path, config: &BenchConfig, samples: &[Sample]) -> Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    let mut buffer = [0; CONFIG_BYTES + 4];
+    file.write_all(encode_config(config, &mut buffer).context("the settings do not fit their buffer")?)?;
+    for sample in samples {
+        file.write_all(&encode_sample(sample))?;
+    }
+    Ok(file.flush()?)
+}
+
+/// The folder of the sources: where this tool was built, else upwards from where it is called.
+///
+/// # Errors
+/// Neither holds them.
+pub fn project() -> Result<PathBuf> {
+    let built = Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf);
+    let here = std::env::current_dir().context("there is no present folder")?;
+    let is_project = |folder: &Path| folder.join("memory.x").is_file() && folder.join("lab/Cargo.toml").is_file();
+    let upwards = here.ancestors().map(Path::to_path_buf);
+    let found = built.into_iter().chain(upwards).find(|folder| is_project(folder));
+    found.context("the device's image is built from source: run this inside the project's folder")
+}
+
+/// Builds an image by its name and finds the file that cargo made.
+fn build(name: &str) -> Result<PathBuf> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["build", "--release", "--quiet", "--package", "palpate", "--bin", name, "--target", tools::TARGET])
+        .args(["--message-format", "json-render-diagnostics"])
+        .current_dir(project()?)
+        // These replace the flags of .cargo/config.toml, the link script among them.
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .stdin(Stdio::null())
+        .stderr(Stdio::inherit())
+        .output()
+        .context("cannot run cargo")?;
+    ensure!(output.status.success(), "the image `{name}` does not build (see above)");
+    let messages = String::from_utf8_lossy(&output.stdout);
+    let artifacts = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+    let executable = artifacts
+        .filter(|message| message["target"]["name"] == name)
+        .find_map(|message| message["executable"].as_str().map(PathBuf::from));
+    executable.with_context(|| format!("cargo built `{name}` and named no file"))
+}

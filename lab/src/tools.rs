@@ -1,0 +1,180 @@
+//! What the project needs beside Rust: the cross target and QEMU. Found, installed where that is allowed, or asked for.
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// The target of the images.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// The emulator of the board.
+pub const QEMU: &str = "qemu-system-arm";
+
+/// Set to anything: nothing is installed, only asked for.
+pub const NO_INSTALL: &str = "PALPATE_NO_INSTALL";
+
+/// A tool that is not there and could not be installed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{what} is missing ({why}); install it with: {command}")]
+pub struct Missing {
+    /// The tool.
+    pub what: &'static str,
+    /// Why it was not installed.
+    pub why: String,
+    /// What a person should run.
+    pub command: String,
+}
+
+/// Finds the cross target, or adds it by rustup.
+///
+/// # Errors
+/// It is not there and cannot be added.
+pub fn cross_target() -> Result<(), Missing> {
+    if target_is_installed() {
+        return Ok(());
+    }
+    let command = ["rustup", "target", "add", TARGET];
+    let missing =
+        |why: String| Missing { what: "the Rust target thumbv7em-none-eabihf", why, command: command.join(" ") };
+    if which::which("rustup").is_err() {
+        return Err(missing("there is no rustup on this machine".to_owned()));
+    }
+    install("the Rust target thumbv7em-none-eabihf", "to build the device's image", &command).map_err(&missing)?;
+    if target_is_installed() { Ok(()) } else { Err(missing("rustup added it, yet rustc does not have it".to_owned())) }
+}
+
+/// The target's own core library stands in the sysroot, whoever put it there.
+fn target_is_installed() -> bool {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let sysroot = Command::new(rustc).args(["--print", "sysroot"]).output();
+    sysroot.is_ok_and(|output| {
+        let sysroot = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
+        sysroot.join("lib/rustlib").join(TARGET).join("lib").is_dir()
+    })
+}
+
+/// Finds QEMU, or installs it by the system's package manager.
+///
+/// # Errors
+/// It is not there and may not be, or could not be, installed.
+pub fn qemu() -> Result<PathBuf, Missing> {
+    if let Ok(found) = which::which(QEMU) {
+        return Ok(found);
+    }
+    let manager = Manager::ALL.into_iter().find(|manager| which::which(manager.program()).is_ok());
+    let Some(manager) = manager else {
+        return Err(Missing {
+            what: QEMU,
+            why: "no package manager is known here".to_owned(),
+            command: "see https://www.qemu.org/download".to_owned(),
+        });
+    };
+    let rights = manager.rights(is_root(), may_sudo());
+    let missing = |why: String| Missing { what: QEMU, why, command: manager.advice() };
+    let Some(prefix) = rights else {
+        return Err(missing("installing it needs the rights of root".to_owned()));
+    };
+    for step in manager.steps() {
+        let command: Vec<&str> = prefix.iter().copied().chain(step.iter().copied()).collect();
+        install(QEMU, "to run the device's image without a board", &command).map_err(missing)?;
+    }
+    which::which(QEMU).map_err(|_| missing("the package was installed, yet it is not on the PATH".to_owned()))
+}
+
+/// A system's package manager.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Manager {
+    Apt,
+    Dnf,
+    Pacman,
+    Brew,
+}
+
+impl Manager {
+    const ALL: [Self; 4] = [Self::Apt, Self::Dnf, Self::Pacman, Self::Brew];
+
+    fn program(self) -> &'static str {
+        match self {
+            Self::Apt => "apt-get",
+            Self::Dnf => "dnf",
+            Self::Pacman => "pacman",
+            Self::Brew => "brew",
+        }
+    }
+
+    /// The commands, one after the other.
+    fn steps(self) -> &'static [&'static [&'static str]] {
+        match self {
+            Self::Apt => {
+                &[&["apt-get", "update"], &["apt-get", "install", "-y", "--no-install-recommends", "qemu-system-arm"]]
+            }
+            Self::Dnf => &[&["dnf", "install", "-y", "qemu-system-arm"]],
+            Self::Pacman => &[&["pacman", "-S", "--noconfirm", "--needed", "qemu-system-arm"]],
+            Self::Brew => &[&["brew", "install", "qemu"]],
+        }
+    }
+
+    /// What goes before the commands, `None` where they may not be run: root needs nothing, others sudo without a
+    /// password (a prompt would hang a script); Homebrew refuses root and needs nobody's leave.
+    fn rights(self, root: bool, sudo: bool) -> Option<&'static [&'static str]> {
+        match self {
+            Self::Brew => Some(&[]),
+            _ if root => Some(&[]),
+            _ if sudo => Some(&["sudo", "-n"]),
+            _ => None,
+        }
+    }
+
+    fn advice(self) -> String {
+        let sudo = if self == Self::Brew { "" } else { "sudo " };
+        self.steps().iter().map(|step| format!("{sudo}{}", step.join(" "))).collect::<Vec<_>>().join(" && ")
+    }
+}
+
+fn is_root() -> bool {
+    Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}
+
+fn may_sudo() -> bool {
+    let quiet = Command::new("sudo").args(["-n", "true"]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    quiet.is_ok_and(|status| status.success())
+}
+
+/// Runs an installation, told beforehand; what it prints goes to standard error.
+fn install(what: &str, why: &str, command: &[&str]) -> Result<(), String> {
+    if std::env::var_os(NO_INSTALL).is_some() {
+        return Err(format!("{NO_INSTALL} is set"));
+    }
+    let Some((program, arguments)) = command.split_first() else {
+        return Err("there is no command for it".to_owned());
+    };
+    eprintln!("installing {what}, {why}: {}", command.join(" "));
+    let output = Command::new(program)
+        .args(arguments)
+        .env("DEBIAN_FRONTEND", "noninteractive")
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("`{}` could not be run: {error}", command.join(" ")))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    eprint!("{}", String::from_utf8_lossy(&output.stderr));
+    Err(format!("`{}` failed with {}", command.join(" "), output.status))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_is_asked_for_a_password_and_the_advice_can_be_pasted() {
+        assert_eq!(Manager::Apt.rights(true, false), Some(&[][..]));
+        assert_eq!(Manager::Apt.rights(false, true), Some(&["sudo", "-n"][..]));
+        assert_eq!(Manager::Apt.rights(false, false), None);
+        assert_eq!(Manager::Brew.rights(false, false), Some(&[][..]));
+        assert_eq!(
+            Manager::Apt.advice(),
+            "sudo apt-get update && sudo apt-get install -y --no-install-recommends qemu-system-arm"
+        );
+        assert_eq!(Manager::Brew.advice(), "brew install qemu");
+    }
+}
