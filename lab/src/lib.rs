@@ -1,4 +1,11 @@
 //! The host tool of palpate, as a library so that its binaries and tests share it.
 
 pub mod error;
+pub mod outfile;
 pub mod page;
+pub mod plant;
+pub mod recording;
+pub mod reference;
+pub mod rig;
+pub mod sensors;
+pub mod simulate;
