@@ -2,5 +2,12 @@
 
 pub mod device;
 pub mod error;
+pub mod outfile;
 pub mod page;
+pub mod plant;
+pub mod recording;
+pub mod reference;
+pub mod rig;
+pub mod sensors;
+pub mod simulate;
 pub mod tools;

@@ -1,0 +1,118 @@
+//! A trial as it was recorded: one column a channel, SI units.
+
+mod columns;
+mod read;
+
+use std::io::Write as _;
+use std::path::Path;
+
+use crate::error::InputError;
+use crate::outfile::OutFile;
+use crate::rig::{Coordinate, Rig};
+use columns::Role;
+
+/// A trial. All columns are of equal length, at least two rows, every number finite, time strictly increasing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Recording {
+    /// File name without its folder.
+    pub name: String,
+    /// Seconds.
+    pub time: Vec<f64>,
+    /// Tool position, positive into the environment.
+    pub position: Vec<f64>,
+    /// Measured velocity.
+    pub velocity: Option<Vec<f64>>,
+    /// Contact force, positive when the tool pushes.
+    pub force: Option<Vec<f64>>,
+    /// Drive effort at the tool.
+    pub effort: Option<Vec<f64>>,
+    /// Commanded position.
+    pub reference: Option<Vec<f64>>,
+}
+
+impl Recording {
+    /// Reads a recording by the column names of `rig`.
+    ///
+    /// Time, position and at least one of force and effort have to be there; columns without a role are skipped.
+    ///
+    /// # Errors
+    /// The file cannot be read or is not UTF-8 CSV, a column is absent or of the other coordinate, a field is no finite
+    /// number, a row is ragged, time does not increase, or there are fewer than two rows; with the true line in the file.
+    pub fn read(path: &Path, rig: &Rig) -> Result<Self, InputError> {
+        read::recording(path, rig)
+    }
+
+    /// Writes the recording under the default names of `coordinate`, whole or not at all.
+    ///
+    /// Numbers are written so that they read back to the bit.
+    ///
+    /// # Errors
+    /// The place cannot be written.
+    pub fn write(&self, path: &Path, coordinate: Coordinate) -> Result<(), InputError> {
+        self.write_to(OutFile::create(path)?, coordinate)
+    }
+
+    /// As [`Recording::write`], into a file opened before.
+    ///
+    /// # Errors
+    /// The place cannot be written any more.
+    pub fn write_to(&self, mut file: OutFile, coordinate: Coordinate) -> Result<(), InputError> {
+        let channels = self.channels();
+        let names: Vec<_> = channels.iter().map(|(role, _)| coordinate.pick(role.default_name())).collect();
+        let mut text = names.join(",") + "\n";
+        for row in 0..self.time.len() {
+            for (at, (_, values)) in channels.iter().enumerate() {
+                if at > 0 {
+                    text.push(',');
+                }
+                push_number(&mut text, values[row]);
+            }
+            text.push('\n');
+            if text.len() > 1 << 16 {
+                file.write_all(text.as_bytes()).map_err(|error| file.fault(&error))?;
+                text.clear();
+            }
+        }
+        file.write_all(text.as_bytes()).map_err(|error| file.fault(&error))?;
+        file.commit()
+    }
+
+    /// Median sample period in seconds.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        let mut steps: Vec<_> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        if steps.is_empty() {
+            return f64::NAN;
+        }
+        let middle = steps.len() / 2;
+        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    /// Samples a second, from the median period.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.period().recip()
+    }
+
+    fn channels(&self) -> Vec<(Role, &[f64])> {
+        [
+            (Role::Time, Some(&self.time)),
+            (Role::Position, Some(&self.position)),
+            (Role::Velocity, self.velocity.as_ref()),
+            (Role::Force, self.force.as_ref()),
+            (Role::Effort, self.effort.as_ref()),
+            (Role::Reference, self.reference.as_ref()),
+        ]
+        .into_iter()
+        .filter_map(|(role, values)| Some((role, values?.as_slice())))
+        .collect()
+    }
+}
+
+/// The shortest text that reads back to the bit, without the zeros of a nanonewton.
+fn push_number(text: &mut String, value: f64) {
+    use std::fmt::Write as _;
+    let plain = value == 0.0 || (1e-4..1e15).contains(&value.abs());
+    // Writing to a String cannot fail.
+    let _ = if plain { write!(text, "{value}") } else { write!(text, "{value:e}") };
+}

@@ -1,0 +1,107 @@
+//! Which column of a file plays which role.
+
+use crate::error::InputError;
+use crate::rig::{Columns, Rig, Word, nearest};
+
+/// What a column means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    Time,
+    Position,
+    Velocity,
+    Force,
+    Effort,
+    Reference,
+}
+
+impl Role {
+    pub const ALL: [Self; 6] = [Self::Time, Self::Position, Self::Velocity, Self::Force, Self::Effort, Self::Reference];
+
+    /// The column's name where the rig file gives none.
+    pub fn default_name(self) -> Word {
+        match self {
+            Self::Time => Word::same("t_s"),
+            Self::Position => Word::new("position_m", "position_rad"),
+            Self::Velocity => Word::new("velocity_m_s", "velocity_rad_s"),
+            Self::Force => Word::new("force_N", "torque_Nm"),
+            Self::Effort => Word::new("effort_N", "effort_Nm"),
+            Self::Reference => Word::new("reference_m", "reference_rad"),
+        }
+    }
+
+    fn given(self, columns: &Columns) -> Option<&str> {
+        match self {
+            Self::Time => &columns.time,
+            Self::Position => &columns.position,
+            Self::Velocity => &columns.velocity,
+            Self::Force => &columns.force,
+            Self::Effort => &columns.effort,
+            Self::Reference => &columns.reference,
+        }
+        .as_deref()
+    }
+}
+
+/// A role, and the index of its column in the file.
+pub type Found = (Role, usize);
+
+/// Finds the columns that `rig` speaks of in `header`. `place` is the file and line of the header.
+pub fn find(header: &[&str], rig: &Rig, place: &str) -> Result<Vec<Found>, InputError> {
+    let mut found = Vec::new();
+    for role in Role::ALL {
+        if let Some(column) = column(role, header, rig, place)? {
+            found.push((role, column));
+        }
+    }
+    let has = |wanted| found.iter().any(|(role, _)| *role == wanted);
+    if !has(Role::Force) && !has(Role::Effort) {
+        let name = |role: Role| rig.coordinate.pick(role.default_name());
+        let both = format!("{} or {} (or [columns] in the rig file)", name(Role::Force), name(Role::Effort));
+        return Err(InputError::new(place, there(header), both));
+    }
+    Ok(found)
+}
+
+fn column(role: Role, header: &[&str], rig: &Rig, place: &str) -> Result<Option<usize>, InputError> {
+    let given = role.given(&rig.columns);
+    let word = role.default_name();
+    let name = given.unwrap_or(rig.coordinate.pick(word));
+    // A column that the rig file gives to one role is not also taken for another by its default name.
+    let taken = |name: &str| Role::ALL.iter().any(|other| *other != role && other.given(&rig.columns) == Some(name));
+    let mut columns = (0..header.len()).filter(|&at| header[at] == name && (given.is_some() || !taken(name)));
+    match (columns.next(), columns.next()) {
+        (Some(first), Some(second)) => {
+            let found = format!("it twice, as columns {} and {}", first + 1, second + 1);
+            Err(InputError::new(format!("{place}: column {name}"), found, "one column of this name"))
+        }
+        (Some(only), None) => Ok(Some(only)),
+        _ => {
+            let foreign = rig.coordinate.other().pick(word);
+            if given.is_none() && foreign != name && header.contains(&foreign) && !taken(foreign) {
+                let found = format!("{foreign}, a column of a {} rig", rig.coordinate.other().name());
+                let expected = format!("{name}, as the rig's coordinate is {}", rig.coordinate.name());
+                return Err(InputError::new(format!("{place}: column {name}"), found, expected));
+            }
+            let optional = given.is_none() && !matches!(role, Role::Time | Role::Position);
+            if optional { Ok(None) } else { Err(missing(name, header, given.is_some(), place)) }
+        }
+    }
+}
+
+fn missing(name: &str, header: &[&str], given: bool, place: &str) -> InputError {
+    let source = if given { "[columns] in the rig file names it" } else { "or its name in [columns] of the rig file" };
+    let expected = match nearest(name, header) {
+        Some(near) => format!("{name} (perhaps {near} is meant; {source})"),
+        None => format!("{name} ({source})"),
+    };
+    InputError::new(format!("{place}: column {name}"), there(header), expected)
+}
+
+fn there(header: &[&str]) -> String {
+    match header {
+        [only] if only.contains(';') || only.contains('\t') => {
+            "one column only, with semicolons or tabs in its name: fields are separated by commas".to_owned()
+        }
+        _ => format!("only the columns {}", header.join(", ")),
+    }
+}

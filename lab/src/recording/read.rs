@@ -1,0 +1,152 @@
+//! From a CSV file to a [`Recording`].
+
+use std::path::Path;
+
+use csv::{ByteRecord, ReaderBuilder};
+
+use super::columns::{self, Found, Role};
+use super::Recording;
+use crate::error::InputError;
+use crate::rig::Rig;
+
+/// See [`Recording::read`].
+pub fn recording(path: &Path, rig: &Rig) -> Result<Recording, InputError> {
+    let place = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| {
+        let found = match error.kind() {
+            std::io::ErrorKind::NotFound => "no such file".to_owned(),
+            std::io::ErrorKind::IsADirectory => "a folder".to_owned(),
+            _ => error.to_string(),
+        };
+        InputError::new(&place, found, "a recording that can be read")
+    })?;
+    let name = path.file_name().map_or_else(|| place.clone(), |name| name.to_string_lossy().into_owned());
+    File { place, bytes: without_mark(&bytes) }.parse(name, rig)
+}
+
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// The bytes of a file after its byte order mark.
+struct File<'a> {
+    place: String,
+    bytes: &'a [u8],
+}
+
+/// The columns wanted and what they hold so far.
+struct Channels {
+    found: Vec<Found>,
+    names: Vec<String>,
+    values: Vec<Vec<f64>>,
+}
+
+impl File<'_> {
+    fn parse(&self, name: String, rig: &Rig) -> Result<Recording, InputError> {
+        self.refuse_other_text()?;
+        let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(self.bytes);
+        let mut record = ByteRecord::new();
+        let read = |reader: &mut csv::Reader<&[u8]>, record: &mut ByteRecord| {
+            reader.read_byte_record(record).map_err(|error| InputError::new(&self.place, error, "CSV"))
+        };
+        if !read(&mut reader, &mut record)? {
+            return Err(InputError::new(&self.place, "an empty file", "a header row and at least two rows of numbers"));
+        }
+        let width = record.len();
+        let mut channels = self.channels(&record, rig)?;
+        while read(&mut reader, &mut record)? {
+            if record.len() != width {
+                let found = format!("{} fields", record.len());
+                return Err(InputError::new(self.line(&record), found, format!("{width}, as in the header")));
+            }
+            self.take(&record, &mut channels)?;
+        }
+        let rows = channels.values[0].len();
+        if rows < 2 {
+            let found = if rows == 0 { "a header and no rows" } else { "a header and a single row" };
+            return Err(InputError::new(&self.place, found, "at least two rows of numbers"));
+        }
+        Ok(channels.into_recording(name))
+    }
+
+    fn refuse_other_text(&self) -> Result<(), InputError> {
+        match std::str::from_utf8(self.bytes) {
+            Ok(_) => Ok(()),
+            Err(error) => {
+                let place = format!("{}:{}", self.place, line_at(self.bytes, error.valid_up_to()));
+                Err(InputError::new(place, "bytes that are not UTF-8", "text in UTF-8"))
+            }
+        }
+    }
+
+    fn channels(&self, header: &ByteRecord, rig: &Rig) -> Result<Channels, InputError> {
+        let names: Vec<_> = header.iter().map(text).collect();
+        let found = columns::find(&names, rig, &self.line(header))?;
+        let taken = found.iter().map(|(_, column)| names[*column].to_owned()).collect();
+        let rows = self.bytes.len() / (8 * names.len()).max(1);
+        let values = found.iter().map(|_| Vec::with_capacity(rows)).collect();
+        Ok(Channels { found, names: taken, values })
+    }
+
+    fn take(&self, record: &ByteRecord, channels: &mut Channels) -> Result<(), InputError> {
+        for (at, (role, column)) in channels.found.iter().enumerate() {
+            let field = text(&record[*column]);
+            let value = field.parse::<f64>().ok().filter(|value| value.is_finite());
+            let values = &mut channels.values[at];
+            let fault = |found: String, expected: String| {
+                let place = format!("{}: column {}", self.line(record), channels.names[at]);
+                Err(InputError::new(place, found, expected))
+            };
+            let Some(value) = value else {
+                return match field.parse::<f64>() {
+                    Ok(_) => fault(format!("\"{field}\""), "a finite number".to_owned()),
+                    Err(_) if field.is_empty() => fault("an empty field".to_owned(), "a number".to_owned()),
+                    Err(_) => fault(format!("the text \"{field}\""), "a number".to_owned()),
+                };
+            };
+            if let (Role::Time, Some(&before)) = (role, values.last())
+                && value <= before
+            {
+                return fault(format!("{value} after {before}"), "time that strictly increases".to_owned());
+            }
+            values.push(value);
+        }
+        Ok(())
+    }
+
+    /// File and line of `record`. Counted only here: the reader's own count is off after CRLF and blank lines.
+    fn line(&self, record: &ByteRecord) -> String {
+        let start = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
+        let rest = self.bytes.get(start..).unwrap_or_default();
+        let skipped = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+        format!("{}:{}", self.place, line_at(self.bytes, start + skipped))
+    }
+}
+
+impl Channels {
+    fn into_recording(self, name: String) -> Recording {
+        let mut recording = Recording { name, ..Recording::default() };
+        for ((role, _), values) in self.found.into_iter().zip(self.values) {
+            match role {
+                Role::Time => recording.time = values,
+                Role::Position => recording.position = values,
+                Role::Velocity => recording.velocity = Some(values),
+                Role::Force => recording.force = Some(values),
+                Role::Effort => recording.effort = Some(values),
+                Role::Reference => recording.reference = Some(values),
+            }
+        }
+        recording
+    }
+}
+
+/// Line of byte `at`, counted from one; a line ends at LF, CRLF or CR.
+fn line_at(bytes: &[u8], at: usize) -> usize {
+    let ends = |i: usize| bytes[i] == b'\n' || (bytes[i] == b'\r' && bytes.get(i + 1) != Some(&b'\n'));
+    1 + (0..at.min(bytes.len())).filter(|&i| ends(i)).count()
+}
+
+/// The file was found to be UTF-8; a quoted field cannot cut a character either.
+fn text(field: &[u8]) -> &str {
+    std::str::from_utf8(field).unwrap_or_default().trim()
+}

@@ -1,0 +1,81 @@
+//! The step of a rounded reading.
+
+/// A gap lies on the lattice when it is this near to a whole number of steps, in steps.
+const NEAR: f64 = 0.15;
+
+/// Share of gaps that must lie on the lattice. Of gaps that know no lattice 30 % do so by chance.
+const SHARE: f64 = 0.9;
+
+/// Below so many gaps chance alone may put 90 % of them on a lattice; then the readings must also repeat.
+const ENOUGH: usize = 12;
+
+/// The largest step of which all readings are whole multiples apart; 0 where there is none.
+///
+/// The gaps between neighbours among the sorted distinct readings lie on a lattice when the sensor rounds. A count that
+/// was printed with few digits (0.000244, 0.000488, 0.000732, 0.000977) is found as that count, not as the last digit, as
+/// long as the digits are at least ten times finer. Steps below 64 units in the last place of the largest reading are the
+/// number format's, not the sensor's. A recording of nothing but digits has the last digit for its step, which is true.
+#[must_use]
+pub fn quantum(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let grain = 8.0 * f64::EPSILON * largest;
+    let mut gaps: Vec<_> = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > grain).collect();
+    if gaps.is_empty() {
+        return 0.0;
+    }
+    gaps.sort_unstable_by(f64::total_cmp);
+    let repeats = gaps.len() + 1 < values.len() / 2;
+    if gaps.len() < ENOUGH && !repeats {
+        return 0.0;
+    }
+    candidates(&gaps)
+        .filter(|step| *step > 8.0 * grain)
+        .filter_map(|step| lattice(&gaps, step))
+        .fold(0.0, f64::max)
+}
+
+/// Gaps from the small end, whole and divided: one of them is a step wherever there are steps.
+fn candidates(gaps: &[f64]) -> impl Iterator<Item = f64> + '_ {
+    [0.0, 0.01, 0.05, 0.1, 0.25, 0.5]
+        .into_iter()
+        .map(|share| gaps[(share * (gaps.len() - 1) as f64) as usize])
+        .flat_map(|gap| (1..=5).map(move |parts| gap / f64::from(parts)))
+}
+
+/// The step nearest to `step` on whose lattice the gaps lie, `None` where they do not.
+///
+/// `gaps` ascend. Few steps fix the step roughly; each fourfold longer reach sharpens it enough to count the next.
+fn lattice(gaps: &[f64], step: f64) -> Option<f64> {
+    let mut step = step;
+    let mut reach = 2.0;
+    let mut judged = 0;
+    while judged < gaps.len() && reach < 1e5 {
+        judged = gaps.partition_point(|gap| *gap < (reach + 0.5) * step);
+        let (product, square) = gaps[..judged].iter().fold((0.0, 0.0), |(product, square), gap| {
+            let count = (gap / step).round();
+            (product + count * gap, square + count * count)
+        });
+        if square > 0.0 {
+            step = product / square;
+        }
+        if share_near(&gaps[..judged], step) < SHARE {
+            return None;
+        }
+        reach *= 4.0;
+    }
+    // A lattice that only a few small gaps were measured against is no finding.
+    (2 * judged >= gaps.len()).then_some(step)
+}
+
+fn share_near(gaps: &[f64], step: f64) -> f64 {
+    if gaps.is_empty() {
+        return 1.0;
+    }
+    let near = |gap: &&f64| {
+        let count = (*gap / step).round();
+        count >= 1.0 && (*gap / step - count).abs() < NEAR
+    };
+    gaps.iter().filter(near).count() as f64 / gaps.len() as f64
+}
