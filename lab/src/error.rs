@@ -22,3 +22,22 @@ impl InputError {
         Self { place: place.to_string(), found: found.to_string(), expected: expected.to_string() }
     }
 }
+
+/// A command line at fault: the option, what was found, what was expected. The exit status is 2.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{option}: found {found}, expected {expected}")]
+pub struct UsageError {
+    /// The option as it is spelt.
+    pub option: String,
+    /// What it was given.
+    pub found: String,
+    /// What was expected instead.
+    pub expected: String,
+}
+
+impl UsageError {
+    /// An error of `option`.
+    pub fn new(option: impl Display, found: impl Display, expected: impl Display) -> Self {
+        Self { option: option.to_string(), found: found.to_string(), expected: expected.to_string() }
+    }
+}

@@ -1,5 +1,6 @@
 //! The host tool of palpate, as a library so that its binaries and tests share it.
 
+pub mod cli;
 pub mod device;
 pub mod error;
 pub mod outfile;
@@ -7,6 +8,7 @@ pub mod page;
 pub mod plant;
 pub mod recording;
 pub mod reference;
+pub mod replay;
 pub mod rig;
 pub mod sensors;
 pub mod simulate;

@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! The host tool `palpate`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    palpate_lab::cli::run()
+}

@@ -90,7 +90,10 @@ fn an_impact_and_a_release_leave_the_integration_at_order_four() {
     assert!(coarse / fine > 100.0, "gain {}", coarse / fine);
     let used = plant.steps_for(0.12) as usize;
     let (default, halved) = (bounce(&plant, used), bounce(&plant, 2 * used));
-    println!("steps of the default: {used}, halving moves the end by {:.2e} m", (default.position - halved.position).abs());
+    println!(
+        "steps of the default: {used}, halving moves the end by {:.2e} m",
+        (default.position - halved.position).abs()
+    );
     close(default.position, halved.position, 1e-6 * 0.01, "halving the default step");
 }
 
@@ -216,7 +219,16 @@ fn a_scale_of_nanonewtons_and_one_of_kilonewtons_obey_the_same_law() {
              [control]\nproportional_n_m = {}\nderivative_n_s_m = {}\n\
              [reference]\nfree_depth_m = {}\ncontact_depth_m = {}\nperiod_s = 2\ncontact_s = 1\nsmoothing_s = 0.05\n\
              sine_amplitude_m = {}\nsine_frequency_hz = 5\n[simulation]\nduration_s = 4\n",
-            0.5 * m, 2.0 * m, 0.1 * l, 300.0 * m, 5.0 * m, 800.0 * m, 10.0 * m, -0.01 * l, 0.01 * l, 0.002 * l
+            0.5 * m,
+            2.0 * m,
+            0.1 * l,
+            300.0 * m,
+            5.0 * m,
+            800.0 * m,
+            10.0 * m,
+            -0.01 * l,
+            0.01 * l,
+            0.002 * l
         );
         trial(&text, 1).recording.force.unwrap()
     };
@@ -239,9 +251,13 @@ fn what_cannot_be_simulated_is_refused_by_name() {
             assert!(error.contains(word), "{error} lacks {word}");
         }
     };
-    says(&format!("{EXAMPLE}[[effect]]\nname = \"coulomb_friction\"\nforce_n = 0.3\n"), &["rig.toml", "coulomb_friction"]);
+    says(
+        &format!("{EXAMPLE}[[effect]]\nname = \"coulomb_friction\"\nforce_n = 0.3\n"),
+        &["rig.toml", "coulomb_friction"],
+    );
     says(&EXAMPLE.replace("stiffness_n_m = 300.0", "stiffness_n_m = 1e15"), &["[control]"]);
-    let stiff = EXAMPLE.replace("mass_kg = 0.8", "mass_kg = 0.02").replace("damping_n_s_m = 5.0", "damping_n_s_m = 1e7");
+    let stiff =
+        EXAMPLE.replace("mass_kg = 0.8", "mass_kg = 0.02").replace("damping_n_s_m = 5.0", "damping_n_s_m = 1e7");
     says(&stiff, &["time constant", "integration steps"]);
     let rotary = "[rig]\nname = \"r\"\ncoordinate = \"rotary\"\n[contact]\nsurface_rad = 0\nstiffness_n_m_rad = 1\n\
                   damping_n_m_s_rad = 0.1\n";

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use super::columns::{self, Found, Role};
 use super::Recording;
+use super::columns::{self, Found, Role};
 use crate::error::InputError;
 use crate::rig::Rig;
 

@@ -30,10 +30,7 @@ pub fn quantum(values: &[f64]) -> f64 {
     if gaps.len() < ENOUGH && !repeats {
         return 0.0;
     }
-    candidates(&gaps)
-        .filter(|step| *step > 8.0 * grain)
-        .filter_map(|step| lattice(&gaps, step))
-        .fold(0.0, f64::max)
+    candidates(&gaps).filter(|step| *step > 8.0 * grain).filter_map(|step| lattice(&gaps, step)).fold(0.0, f64::max)
 }
 
 /// Gaps from the small end, whole and divided: one of them is a step wherever there are steps.

@@ -1,0 +1,41 @@
+//! The command line of `palpate`.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::error::UsageError;
+use crate::replay::{self, ReplayArgs};
+use crate::simulate::{self, SimulateArgs};
+
+/// Stiffness and damping of what a tool touches: identified from recordings, on the host or on the drive's processor.
+#[derive(Debug, Parser)]
+#[command(name = "palpate", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run recordings through the estimators
+    Replay(ReplayArgs),
+    /// Make a recording from a rig file
+    Simulate(SimulateArgs),
+}
+
+/// Runs the command line; 0 done, 1 the input or a file is at fault, 2 the command line is.
+#[must_use]
+pub fn run() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Replay(args) => replay::run(&args),
+        Command::Simulate(args) => simulate::run(args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("palpate: {error:#}");
+            if error.is::<UsageError>() { ExitCode::from(2) } else { ExitCode::FAILURE }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! What the estimators returned, method by method.
+
+use palpate::exchange::Outcome;
+use palpate::{Estimate, Flags, Method, Rejection, Sample};
+
+use super::settings::Plan;
+use crate::page;
+
+/// Every estimate of every method that ran.
+pub struct Trace {
+    columns: Vec<(Method, Vec<Estimate>)>,
+    rejections: Vec<Option<Rejection>>,
+}
+
+impl Trace {
+    /// For `samples` samples.
+    #[must_use]
+    pub fn new(methods: &[Method], samples: usize) -> Self {
+        let columns = methods.iter().map(|&method| (method, Vec::with_capacity(samples))).collect();
+        Self { columns, rejections: Vec::with_capacity(samples) }
+    }
+
+    /// Takes the outcome of the next sample. A rejected one holds what was before it.
+    pub fn take(&mut self, outcome: Outcome) {
+        for (method, estimates) in &mut self.columns {
+            let held = estimates.last().copied().unwrap_or(Estimate::NO_CONTACT);
+            estimates.push(outcome.map_or(held, |all| all[*method as usize]));
+        }
+        self.rejections.push(outcome.err());
+    }
+
+    /// The estimates by method, in the order asked for.
+    #[must_use]
+    pub fn columns(&self) -> &[(Method, Vec<Estimate>)] {
+        &self.columns
+    }
+
+    /// Why sample `k` was rejected, `None` where it was not.
+    #[must_use]
+    pub fn rejection(&self, k: usize) -> Option<Rejection> {
+        self.rejections.get(k).copied().flatten()
+    }
+
+    /// The contact gate, sample by sample.
+    #[must_use]
+    pub fn contact(&self) -> Vec<bool> {
+        let first = self.columns.first().map_or(&[][..], |(_, estimates)| estimates);
+        first.iter().map(|estimate| !estimate.flags.contains(Flags::NO_CONTACT)).collect()
+    }
+
+    /// What a reader should know of the run.
+    #[must_use]
+    pub fn notices(&self, plan: &Plan) -> Vec<String> {
+        let mut notices = Vec::new();
+        let rejected = self.rejections.iter().flatten().count();
+        if rejected > 0 {
+            notices
+                .push(format!("{rejected} samples were rejected as out of range; the estimates before them are held"));
+        }
+        let contact = self.contact().into_iter().filter(|touching| *touching).count();
+        if contact == 0 {
+            let on = plan.config.stream.front_end.gate.on_force;
+            notices.push(format!("no contact: no force above {on:.3e} while the tool was in the surface"));
+            return notices;
+        }
+        let Some((_, first)) = self.columns.first() else { return notices };
+        let restarts = first.iter().skip(1).filter(|estimate| estimate.flags.contains(Flags::RESTARTED)).count();
+        if restarts > 0 {
+            notices.push(format!(
+                "{restarts} gaps in time, longer than the velocity filter can bridge: it began anew there"
+            ));
+        }
+        for (method, estimates) in &self.columns {
+            let unsure = |flag| estimates.iter().filter(|estimate| estimate.flags.contains(flag)).count();
+            if unsure(Flags::DAMPING_UNCERTAIN) * 2 > contact {
+                notices.push(format!(
+                    "{}: B is not known to better than 30 % for most of the contact; the tool has to move more, or faster",
+                    method.name()
+                ));
+            }
+        }
+        notices
+    }
+
+    /// The traces as the page shows them, for the samples that were fed.
+    #[must_use]
+    pub fn methods(&self, samples: &[Sample]) -> Vec<page::Method> {
+        self.columns
+            .iter()
+            .map(|(method, estimates)| {
+                let column = |value: fn(&Estimate) -> f32| estimates.iter().map(value).collect();
+                page::Method {
+                    name: method.name(),
+                    title: method.title(),
+                    stiffness: column(|e| e.impedance.stiffness),
+                    stiffness_half_width: column(|e| e.half_width.stiffness),
+                    damping: column(|e| e.impedance.damping),
+                    damping_half_width: column(|e| e.half_width.damping),
+                    innovation: column(|e| e.innovation),
+                    summary: summary(estimates, samples),
+                }
+            })
+            .collect()
+    }
+}
+
+/// Medians over the samples in contact whose intervals are finite; `None` where there are none.
+fn summary(estimates: &[Estimate], samples: &[Sample]) -> Option<page::Summary> {
+    let touching = || estimates.iter().zip(samples).filter(|(e, _)| !e.flags.contains(Flags::NO_CONTACT));
+    let known = |e: &Estimate| e.half_width.stiffness.is_finite() && e.half_width.damping.is_finite();
+    let median_of = |value: fn(&Estimate) -> f32| median(touching().filter(|(e, _)| known(e)).map(|(e, _)| value(e)));
+    let energy =
+        |value: fn(&Estimate, &Sample) -> f32| -> f64 { touching().map(|(e, s)| f64::from(value(e, s)).powi(2)).sum() };
+    Some(page::Summary {
+        stiffness: median_of(|e| e.impedance.stiffness)?,
+        stiffness_half_width: median_of(|e| e.half_width.stiffness)?,
+        damping: median_of(|e| e.impedance.damping)?,
+        damping_half_width: median_of(|e| e.half_width.damping)?,
+        rmse_percent: 100.0 * (energy(|e, _| e.innovation) / energy(|_, s| s.force)).sqrt(),
+    })
+}
+
+fn median(values: impl Iterator<Item = f32>) -> Option<f64> {
+    let mut values: Vec<f32> = values.collect();
+    let middle = values.len().checked_sub(1)? / 2;
+    Some(f64::from(*values.select_nth_unstable_by(middle, f32::total_cmp).1))
+}
