@@ -135,7 +135,8 @@ fn words<const N: usize>(bytes: &[u8]) -> Option<[u32; N]> {
     Some(words)
 }
 
-fn estimate_words(e: &Estimate) -> [u32; 8] {
+/// An estimate as the words of its record: equal words are equal to the bit.
+pub fn estimate_words(e: &Estimate) -> [u32; 8] {
     [
         e.impedance.stiffness.to_bits(),
         e.impedance.damping.to_bits(),

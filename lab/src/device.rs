@@ -13,7 +13,7 @@ use palpate::exchange::{
 };
 use palpate::{BenchConfig, Sample};
 
-use crate::tools;
+use crate::tools::{self, Leave};
 
 /// An image that takes no record for this long is given up.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -25,13 +25,13 @@ pub struct Device {
 }
 
 impl Device {
-    /// Sets up the tools and builds the image.
+    /// Finds the tools, or sets them up where `leave` is given, and builds the image.
     ///
     /// # Errors
     /// A tool is missing (as [`tools::Missing`]), the sources are not there, or the build fails.
-    pub fn prepare() -> Result<Self> {
-        tools::cross_target()?;
-        Ok(Self { qemu: tools::qemu()?, image: build("replay")? })
+    pub fn prepare(leave: Leave) -> Result<Self> {
+        tools::cross_target(leave)?;
+        Ok(Self { qemu: tools::qemu(leave)?, image: build("replay")? })
     }
 
     /// Feeds `samples` to the image and hands each outcome to `take`, in order. The time is the emulator's own: it sleeps

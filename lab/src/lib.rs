@@ -1,12 +1,14 @@
 //! The host tool of palpate, as a library so that its binaries and tests share it.
 
 pub mod cli;
+pub mod demo;
 pub mod device;
 pub mod error;
 pub mod outfile;
 pub mod page;
 pub mod plant;
 pub mod recording;
+pub mod recordings;
 pub mod reference;
 pub mod replay;
 pub mod rig;

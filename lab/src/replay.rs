@@ -19,6 +19,7 @@ use crate::outfile::OutFile;
 use crate::page::{Page, Trial, Units};
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
+use crate::tools::Leave;
 pub use settings::{Options, Plan};
 pub use trace::Trace;
 
@@ -125,7 +126,7 @@ impl Runner {
     pub fn prepare(place: Place) -> Result<Self> {
         Ok(match place {
             Place::Host => Self::Host,
-            Place::Qemu => Self::Device(Device::prepare()?),
+            Place::Qemu => Self::Device(Device::prepare(Leave::Install)?),
         })
     }
 
@@ -158,13 +159,18 @@ fn progress(name: &str, samples: usize) -> ProgressBar {
 }
 
 /// The output files, opened before the work so that a place that cannot be written shows at once.
-struct Outputs {
+pub struct Outputs {
     estimates: Vec<OutFile>,
     page: OutFile,
 }
 
 impl Outputs {
-    fn open(folder: &Path, trials: &[PathBuf]) -> Result<Self> {
+    /// Makes the folders and opens the files: `estimates.csv` in `folder` itself for one trial, in a folder each for
+    /// several, and `replay.html`.
+    ///
+    /// # Errors
+    /// The place cannot be written.
+    pub fn open(folder: &Path, trials: &[PathBuf]) -> Result<Self> {
         let make = |folder: &Path| {
             let what = || InputError::new(folder.display(), "a folder that cannot be made", "a writable place");
             std::fs::create_dir_all(folder).with_context(what)
@@ -183,7 +189,11 @@ impl Outputs {
         Ok(Self { estimates, page: OutFile::create(&folder.join("replay.html"))? })
     }
 
-    fn write(mut self, rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Result<()> {
+    /// Writes what was replayed, whole or not at all.
+    ///
+    /// # Errors
+    /// The place cannot be written any more.
+    pub fn write(mut self, rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Result<()> {
         for (file, replayed) in self.estimates.into_iter().zip(replayed) {
             estimates::write(file, rig.coordinate, replayed)?;
         }
@@ -247,14 +257,20 @@ fn print_table(rig: &Rig, replayed: &[Replayed]) -> Result<()> {
             match method.summary {
                 None => writeln!(out, "{name} never known: no contact, or no movement in it")?,
                 Some(s) => {
-                    let k = format!("{:.4} ± {:.2}", Short(s.stiffness), Short(s.stiffness_half_width));
-                    let b = format!("{:.4} ± {:.2}", Short(s.damping), Short(s.damping_half_width));
+                    let k = interval(s.stiffness, s.stiffness_half_width);
+                    let b = interval(s.damping, s.damping_half_width);
                     writeln!(out, "{name} {k:>24} {b:>24} {:>8.2}", s.rmse_percent)?;
                 }
             }
         }
     }
     Ok(())
+}
+
+/// A value with the half-width of its interval.
+#[must_use]
+pub fn interval(value: f64, half_width: f64) -> String {
+    format!("{:.4} ± {:.2}", Short(value), Short(half_width))
 }
 
 /// A number in as many significant digits as the precision asks for, with an exponent where it is very small or large.

@@ -12,6 +12,15 @@ pub const QEMU: &str = "qemu-system-arm";
 /// Set to anything: nothing is installed, only asked for.
 pub const NO_INSTALL: &str = "PALPATE_NO_INSTALL";
 
+/// Whether a tool that is not there may be installed. [`NO_INSTALL`] overrules it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leave {
+    /// Install what is missing, saying so.
+    Install,
+    /// Only look: a test changes nothing on the machine.
+    Look,
+}
+
 /// A tool that is not there and could not be installed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{what} is missing ({why}); install it with: {command}")]
@@ -28,13 +37,16 @@ pub struct Missing {
 ///
 /// # Errors
 /// It is not there and cannot be added.
-pub fn cross_target() -> Result<(), Missing> {
+pub fn cross_target(leave: Leave) -> Result<(), Missing> {
     if target_is_installed() {
         return Ok(());
     }
     let command = ["rustup", "target", "add", TARGET];
     let missing =
         |why: String| Missing { what: "the Rust target thumbv7em-none-eabihf", why, command: command.join(" ") };
+    if let Some(why) = leave.refused() {
+        return Err(missing(why));
+    }
     if which::which("rustup").is_err() {
         return Err(missing("there is no rustup on this machine".to_owned()));
     }
@@ -56,7 +68,7 @@ fn target_is_installed() -> bool {
 ///
 /// # Errors
 /// It is not there and may not be, or could not be, installed.
-pub fn qemu() -> Result<PathBuf, Missing> {
+pub fn qemu(leave: Leave) -> Result<PathBuf, Missing> {
     if let Ok(found) = which::which(QEMU) {
         return Ok(found);
     }
@@ -68,8 +80,11 @@ pub fn qemu() -> Result<PathBuf, Missing> {
             command: "see https://www.qemu.org/download".to_owned(),
         });
     };
-    let rights = manager.rights(is_root(), may_sudo());
     let missing = |why: String| Missing { what: QEMU, why, command: manager.advice() };
+    if let Some(why) = leave.refused() {
+        return Err(missing(why));
+    }
+    let rights = manager.rights(is_root(), may_sudo());
     let Some(prefix) = rights else {
         return Err(missing("installing it needs the rights of root".to_owned()));
     };
@@ -78,6 +93,37 @@ pub fn qemu() -> Result<PathBuf, Missing> {
         install(QEMU, "to run the device's image without a board", &command).map_err(missing)?;
     }
     which::which(QEMU).map_err(|_| missing("the package was installed, yet it is not on the PATH".to_owned()))
+}
+
+/// Finds a component of the toolchain by the command that it brings, or adds it by rustup.
+///
+/// # Errors
+/// It is not there and cannot be added.
+pub fn component(name: &'static str, subcommand: &str, leave: Leave) -> Result<(), Missing> {
+    let works = || {
+        let mut command = Command::new("cargo");
+        command.args([subcommand, "--version"]).stdout(Stdio::null()).stderr(Stdio::null());
+        command.status().is_ok_and(|status| status.success())
+    };
+    if works() {
+        return Ok(());
+    }
+    let command = ["rustup", "component", "add", name];
+    let missing = |why: String| Missing { what: name, why, command: command.join(" ") };
+    match leave.refused() {
+        Some(why) => Err(missing(why)),
+        None => install(name, "to check the sources", &command).map_err(missing),
+    }
+}
+
+impl Leave {
+    /// Why nothing is installed, `None` where it may be.
+    fn refused(self) -> Option<String> {
+        match self {
+            Self::Look => Some("nothing is installed by a test".to_owned()),
+            Self::Install => std::env::var_os(NO_INSTALL).map(|_| format!("{NO_INSTALL} is set")),
+        }
+    }
 }
 
 /// A system's package manager.
@@ -141,9 +187,6 @@ fn may_sudo() -> bool {
 
 /// Runs an installation, told beforehand; what it prints goes to standard error.
 fn install(what: &str, why: &str, command: &[&str]) -> Result<(), String> {
-    if std::env::var_os(NO_INSTALL).is_some() {
-        return Err(format!("{NO_INSTALL} is set"));
-    }
     let Some((program, arguments)) = command.split_first() else {
         return Err("there is no command for it".to_owned());
     };

@@ -1,16 +1,43 @@
 //! The device against the host: the same sources, the same samples, the same bits.
+//!
+//! Without the cross target or QEMU these tests say so and pass, unless `PALPATE_DEVICE=required` (as `cargo verify`
+//! sets it where it has set them up).
 
-use palpate::exchange::Outcome;
+use std::path::Path;
+
+use palpate::exchange::{Counters, Outcome, estimate_words};
 use palpate::{
-    Bench, BenchConfig, BlockConfig, EwrlsConfig, GradientConfig, Method, Methods, ResetRlsConfig, Sample, SprlsConfig,
-    StreamConfig,
+    Bench, BenchConfig, BlockConfig, ContactLoss, EwrlsConfig, Field, FrontEndConfig, GradientConfig, Method, Methods,
+    Rejection, ResetRlsConfig, Sample, SprlsConfig, StreamConfig, Velocity,
 };
-use palpate_lab::device::Device;
+use palpate_lab::device::{Device, project};
+use palpate_lab::recording::Recording;
+use palpate_lab::recordings;
+use palpate_lab::replay::{Options, Plan};
+use palpate_lab::rig::{Contact, Rig};
+use palpate_lab::simulate;
+use palpate_lab::tools::{Leave, Missing};
 
-fn everything() -> BenchConfig {
+/// The device, or `None` with a word where its tools are absent.
+fn device() -> Option<Device> {
+    match Device::prepare(Leave::Look) {
+        Ok(device) => Some(device),
+        Err(error) if error.is::<Missing>() && std::env::var_os("PALPATE_DEVICE").is_none() => {
+            eprintln!("left out: {error}");
+            None
+        }
+        Err(error) => panic!("{error:#}"),
+    }
+}
+
+fn every_method() -> Methods {
+    Method::ALL.into_iter().fold(Methods::default(), Methods::with)
+}
+
+fn every_estimator(stream: StreamConfig) -> BenchConfig {
     BenchConfig {
-        stream: StreamConfig::BENCH,
-        methods: Method::ALL.into_iter().fold(Methods::default(), Methods::with),
+        stream,
+        methods: every_method(),
         rls: EwrlsConfig::rls(),
         ewrls: EwrlsConfig::default(),
         sprls: SprlsConfig::default(),
@@ -20,29 +47,147 @@ fn everything() -> BenchConfig {
     }
 }
 
+/// Runs both and compares every word of every outcome; returns the device's counters and the host's outcomes.
+fn compare(device: &Device, what: &str, config: &BenchConfig, samples: &[Sample]) -> (Counters, Vec<Outcome>) {
+    let mut bench = Bench::new(config).expect("sound settings");
+    let host: Vec<Outcome> = samples.iter().map(|&sample| bench.update(sample)).collect();
+    let mut returned = 0;
+    let counters = device
+        .run(config, samples, |outcome| {
+            assert_same(what, returned, &host[returned], &outcome);
+            returned += 1;
+        })
+        .unwrap_or_else(|error| panic!("{what}: {error:#}"));
+    assert_eq!(returned, samples.len(), "{what}");
+    assert_eq!(counters.samples as usize, samples.len(), "{what}: the interrupt took every sample once");
+    (counters, host)
+}
+
+fn assert_same(what: &str, k: usize, host: &Outcome, device: &Outcome) {
+    match (host, device) {
+        (Ok(host), Ok(device)) => {
+            for (method, (host, device)) in Method::ALL.iter().zip(host.iter().zip(device)) {
+                assert_eq!(
+                    estimate_words(host),
+                    estimate_words(device),
+                    "{what}, sample {k}, {method:?}: {host:?}, {device:?}"
+                );
+            }
+        }
+        _ => assert_eq!(host, device, "{what}, sample {k}"),
+    }
+}
+
 #[test]
-fn smoke() {
-    let samples: Vec<Sample> = (0..3000)
+fn on_a_simulated_bench_every_estimate_has_the_same_bits() {
+    let Some(device) = device() else { return };
+    let rig_path = project().expect("sources").join("lab/rigs/bench.toml");
+    let rig = Rig::read(&rig_path).expect("a rig");
+    let recording = simulate::simulate(&rig, 7, "bench.toml").expect("a trial").recording;
+    let options = Options { methods: Method::ALL.to_vec(), ..Options::default() };
+    let plan = Plan::new(&rig, &rig_path, &recording, &options).expect("a plan");
+    let (counters, host) = compare(&device, "bench", &plan.config, &plan.samples);
+    assert_eq!(counters.overruns, 0, "every update ends within its millisecond");
+    let touched = host.iter().flatten().filter(|all| all[Method::Bls as usize].impedance.stiffness > 100.0).count();
+    assert!(touched > 20_000, "the bench touches for half of its 60 s, found {touched} samples");
+}
+
+#[test]
+fn on_every_real_recording_every_estimate_has_the_same_bits() {
+    let Some(device) = device() else { return };
+    let Some(folder) = recordings::folder() else {
+        eprintln!("left out: no real recordings; {}", recordings::ADVICE);
+        return;
+    };
+    let (mut trials, mut samples) = (0, 0);
+    for set in
+        ["afm_soft_contact", "tissue_indentation", "keyswitch_press", "nanoindentation", "pneumatic_seal_friction"]
+    {
+        let mut paths: Vec<_> = std::fs::read_dir(folder.join(set))
+            .unwrap_or_else(|error| panic!("{set}: {error}"))
+            .map(|entry| entry.expect("an entry").path())
+            .filter(|path| path.extension().is_some_and(|extension| extension == "csv"))
+            .collect();
+        paths.sort();
+        for path in paths {
+            samples += compare_trial(&device, &path);
+            trials += 1;
+        }
+    }
+    eprintln!("{trials} real recordings, {samples} samples, nine methods: the same bits");
+    assert!(trials >= 50, "{trials} trials");
+}
+
+/// The surface stands at the median position, so that about half of any recording is contact.
+fn compare_trial(device: &Device, path: &Path) -> usize {
+    let recording = Recording::read(path, &Rig::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mut positions = recording.position.clone();
+    positions.sort_by(f64::total_cmp);
+    let surface = positions[positions.len() / 2];
+    let contact = Contact { surface, stiffness: 1.0, damping: 0.0, bilateral: false };
+    let rig = Rig { contact: Some(contact), ..Rig::default() };
+    let options = Options { methods: Method::ALL.to_vec(), window: 120, ..Options::default() };
+    let plan =
+        Plan::new(&rig, path, &recording, &options).unwrap_or_else(|error| panic!("{}: {error:#}", recording.name));
+    compare(device, &recording.name, &plan.config, &plan.samples);
+    plan.samples.len()
+}
+
+#[test]
+fn a_hostile_stream_has_the_same_bits_and_the_same_rejections() {
+    let Some(device) = device() else { return };
+    let mut random = 1_u32;
+    let mut draw = move || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        random >> 8
+    };
+    let samples: Vec<Sample> = (0..6000)
         .map(|k| {
             let t = k as f32 * 1e-3;
-            let x = 0.010 * (2.0 * t).sin() + 0.003 * (63.0 * t).sin();
-            Sample {
-                position: x,
-                force: (300.0 * x).max(0.0) + if k % 700 == 3 { f32::NAN } else { 0.0 },
-                elapsed: 1e-3,
+            let position = 0.010 * (2.0 * t).sin() + 0.003 * (63.0 * t).sin();
+            let good = Sample { position, force: (300.0 * position).max(0.0), elapsed: 1e-3 };
+            match draw() % 40 {
+                0 => Sample { position: f32::NAN, ..good },
+                1 => Sample { force: f32::INFINITY, ..good },
+                2 => Sample { elapsed: -1.0, ..good },
+                3 => Sample { elapsed: 0.05, ..good },
+                4 => Sample { force: 1e30, ..good },
+                5 => Sample { elapsed: 1e-3 * (1.0 + draw() as f32 / 1.7e7), ..good },
+                6 => Sample { position: f32::from_bits(draw()), ..good },
+                7 => Sample { position: good.position * 1e5, force: good.force * 1e4, ..good },
+                _ => good,
             }
         })
         .collect();
-    let config = everything();
-    let mut bench = Bench::new(&config).unwrap();
-    let host: Vec<Outcome> = samples.iter().map(|s| bench.update(*s)).collect();
-    let device = Device::prepare().unwrap();
-    let mut out = vec![];
-    let t = std::time::Instant::now();
-    let counters = device.run(&config, &samples, |o| out.push(o)).unwrap();
-    eprintln!("{counters:?} in {:?}", t.elapsed());
-    for (k, (a, b)) in host.iter().zip(&out).enumerate() {
-        assert_eq!(a, b, "{k}");
+    for velocity in [Velocity::Matched, Velocity::Paper] {
+        for contact_loss in [ContactLoss::Everything, ContactLoss::Memory, ContactLoss::Nothing] {
+            let front_end = FrontEndConfig { velocity, ..FrontEndConfig::BENCH };
+            let config = every_estimator(StreamConfig { front_end, contact_loss, ..StreamConfig::BENCH });
+            let (_, host) = compare(&device, &format!("{velocity:?}, {contact_loss:?}"), &config, &samples);
+            for rejection in [
+                Rejection::NotFinite(Field::Position),
+                Rejection::NotFinite(Field::Force),
+                Rejection::OutOfRange(Field::Elapsed),
+                Rejection::OutOfRange(Field::Force),
+            ] {
+                assert!(host.contains(&Err(rejection)), "the stream was to provoke {rejection:?}");
+            }
+        }
     }
-    assert_eq!(host.len(), out.len());
+}
+
+#[test]
+fn an_empty_recording_and_a_single_sample_come_back() {
+    let Some(device) = device() else { return };
+    let config = every_estimator(StreamConfig::BENCH);
+    compare(&device, "empty", &config, &[]);
+    compare(&device, "single", &config, &[Sample { position: 0.01, force: 3.0, elapsed: 1e-3 }]);
+}
+
+#[test]
+fn settings_out_of_range_are_refused_by_the_image_and_told() {
+    let Some(device) = device() else { return };
+    let config = BenchConfig { block: BlockConfig::of(5000), ..every_estimator(StreamConfig::BENCH) };
+    let error = device.run(&config, &[], |_| ()).expect_err("a window of 5000 samples");
+    assert!(format!("{error:#}").contains("the settings are out of range"), "{error:#}");
 }

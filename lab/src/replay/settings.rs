@@ -22,19 +22,19 @@ pub struct Options {
     #[arg(long = "method", value_name = "NAME,...", value_delimiter = ',', default_value = "ewrls,sprls,bls,blmf", value_parser = method)]
     pub methods: Vec<Method>,
     /// Window of the block methods and reset interval of reset_rls, in samples
-    #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u16).range(2..=BENCH_WINDOW as i64))]
+    #[arg(long, value_name = "N", default_value_t = Self::default().window, value_parser = clap::value_parser!(u16).range(2..=BENCH_WINDOW as i64))]
     pub window: u16,
     /// Forgetting factor of ewrls
-    #[arg(long, value_name = "LAMBDA", default_value_t = 0.9967)]
+    #[arg(long, value_name = "LAMBDA", default_value_t = Self::default().forgetting)]
     pub forgetting: f32,
     /// Initial covariance of the recursive methods, for a rig of the paper's proportions
-    #[arg(long, value_name = "P0", default_value_t = 10.0)]
+    #[arg(long, value_name = "P0", default_value_t = Self::default().initial_covariance)]
     pub initial_covariance: f32,
     /// Perturbation gain of sprls
-    #[arg(long, value_name = "BETA", default_value_t = 100.0)]
+    #[arg(long, value_name = "BETA", default_value_t = Self::default().sprls_beta)]
     pub sprls_beta: f32,
     /// Perturbation sensitivity of sprls
-    #[arg(long, value_name = "GAMMA", default_value_t = 2.0)]
+    #[arg(long, value_name = "GAMMA", default_value_t = Self::default().sprls_gamma)]
     pub sprls_gamma: f32,
     /// Cut-off of the velocity filter in Hz; 20, or a fifth of the sample rate where that is less
     #[arg(long, value_name = "HZ")]
@@ -45,6 +45,23 @@ pub struct Options {
     /// What a loss of contact makes forgotten
     #[arg(long, value_enum, default_value_t)]
     pub contact_loss: LossChoice,
+}
+
+impl Default for Options {
+    /// The paper's settings, its four methods, matched filtering.
+    fn default() -> Self {
+        Self {
+            methods: vec![Method::Ewrls, Method::Sprls, Method::Bls, Method::Blmf],
+            window: BlockConfig::default().window,
+            forgetting: EwrlsConfig::default().forgetting_factor,
+            initial_covariance: EwrlsConfig::default().initial_covariance,
+            sprls_beta: SprlsConfig::default().perturbation_gain,
+            sprls_gamma: SprlsConfig::default().perturbation_sensitivity,
+            velocity_cutoff: None,
+            velocity: VelocityChoice::default(),
+            contact_loss: LossChoice::default(),
+        }
+    }
 }
 
 /// How the velocity is had.

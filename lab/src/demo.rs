@@ -1,0 +1,116 @@
+//! `cargo demo`: the main job, once through, on a recording that it makes and on a real one where there is one.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, ensure};
+use palpate::Method;
+use palpate::exchange::estimate_words;
+
+use crate::device::{Device, project};
+use crate::recording::Recording;
+use crate::recordings;
+use crate::replay::{Options, Outputs, Place, Replayed, Runner, replay};
+use crate::rig::Rig;
+use crate::simulate::{self, SimulateArgs};
+use crate::tools::{Leave, Missing};
+
+/// Runs the demonstration; what had to be left out is told at the end.
+///
+/// # Errors
+/// A file cannot be written, a tool that is there fails, or host and device differ.
+pub fn run() -> Result<()> {
+    let mut left_out = Vec::new();
+    println!("1. The device: its image, and QEMU to run it");
+    let device = match Device::prepare(Leave::Install) {
+        Ok(device) => Some(Runner::Device(device)),
+        Err(error) if error.is::<Missing>() => {
+            left_out.push(format!("the device: {error}"));
+            None
+        }
+        Err(error) => return Err(error),
+    };
+    let project = project()?;
+    let out = project.join("out").join("demo");
+    let rigs = project.join("lab").join("rigs");
+    std::fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
+
+    println!("2. A simulated bench: a tool taps a wall of 300 N/m and 5 N s/m");
+    let bench = rigs.join("bench.toml");
+    let trial = out.join("bench.csv");
+    simulate::run(SimulateArgs { rig: bench.clone(), model: None, seed: 1, out: trial.clone() })?;
+    let mut pages = vec![show(device.as_ref(), &bench, &trial, &out.join("bench"))?];
+
+    println!("3. A real recording: a probe sinks into a polymer gel, nanonewtons on micrometres");
+    let real = recordings::folder().map(|folder| folder.join("afm_soft_contact").join("creep_polymergel.csv"));
+    match real.filter(|path| path.is_file()) {
+        Some(trial) => pages.push(show(device.as_ref(), &rigs.join("afm_creep_gel.toml"), &trial, &out.join("gel"))?),
+        None => left_out.push(format!("the real recording: there is none here; {}", recordings::ADVICE)),
+    }
+
+    println!("Pages to open in a browser:");
+    pages.iter().for_each(|page| println!("   {}", page.display()));
+    if left_out.is_empty() {
+        println!("Nothing was left out.");
+    } else {
+        println!("Left out:");
+        left_out.iter().for_each(|what| println!("   {what}"));
+    }
+    Ok(())
+}
+
+/// Identifies one recording on the host and, where there is one, on the device; returns the page.
+fn show(device: Option<&Runner>, rig_path: &Path, trial: &Path, out: &Path) -> Result<PathBuf> {
+    let rig = Rig::read(rig_path)?;
+    let options = Options::default();
+    let outputs = Outputs::open(out, &[trial.to_path_buf()])?;
+    let run = |runner| replay(runner, &rig, rig_path, Recording::read(trial, &rig)?, &options);
+    let host = run(&Runner::Host)?;
+    let device = device.map(run).transpose()?;
+    print_side_by_side(&rig, &host, device.as_ref())?;
+    outputs.write(&rig, &[host], &options, Place::Host)?;
+    Ok(out.join("replay.html"))
+}
+
+fn print_side_by_side(rig: &Rig, host: &Replayed, device: Option<&Replayed>) -> Result<()> {
+    let (k, b) = (rig.coordinate.stiffness_unit(), rig.coordinate.damping_unit());
+    println!(
+        "   {:<8} {:>26} {:>26}   device",
+        "method",
+        format!("K on the host [{k}]"),
+        format!("B on the host [{b}]")
+    );
+    for (at, method) in host.trace.methods(&host.plan.samples).iter().enumerate() {
+        let verdict = match device {
+            None => "left out".to_owned(),
+            Some(device) => same_bits(host, device, at)?,
+        };
+        let (k, b) = method.summary.map_or(("unknown".to_owned(), "unknown".to_owned()), |s| {
+            (
+                crate::replay::interval(s.stiffness, s.stiffness_half_width),
+                crate::replay::interval(s.damping, s.damping_half_width),
+            )
+        });
+        println!("   {:<8} {k:>26} {b:>26}   {verdict}", method.name);
+    }
+    Ok(())
+}
+
+/// How many samples agree to the bit; an error where one does not.
+fn same_bits(host: &Replayed, device: &Replayed, at: usize) -> Result<String> {
+    let pick = |replayed: &Replayed| replayed.trace.columns().get(at).cloned().context("a method did not run");
+    let ((method, host), (_, device)): ((Method, _), _) = (pick(host)?, pick(device)?);
+    ensure!(
+        host.len() == device.len(),
+        "{}: the device returned {} of {} samples",
+        method.name(),
+        device.len(),
+        host.len()
+    );
+    let differing = host.iter().zip(&device).position(|(a, b)| estimate_words(a) != estimate_words(b));
+    match differing {
+        Some(k) => {
+            anyhow::bail!("{}: host and device differ at sample {k}: {:?}, {:?}", method.name(), host[k], device[k])
+        }
+        None => Ok(format!("same bits on {} of {} samples", device.len(), host.len())),
+    }
+}
