@@ -44,7 +44,13 @@ const chart = (() => {
     const kept = sorted(settled, from, to);
     if (kept.length === 0) return null;
     const share = halfWidths ? 0.05 : 0.01;
-    return [quantile(kept, share) - margin, quantile(kept, 1 - share) + margin];
+    let [low, high] = [quantile(kept, share) - margin, quantile(kept, 1 - share) + margin];
+    if (halfWidths) {
+      // A steady estimate shall look steady, not like noise blown up to the height of the picture.
+      const calm = 0.1 * Math.abs(quantile(kept, 0.5));
+      [low, high] = [Math.min(low, quantile(kept, 0.5) - calm), Math.max(high, quantile(kept, 0.5) + calm)];
+    }
+    return [low, high];
   }
 
   // The best method sets the range; the others may widen it, though not so far that the best is flattened.
@@ -119,6 +125,7 @@ const chart = (() => {
     ctx.stroke();
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
     ctx.textAlign = "right";
+    ctx.textBaseline = "alphabetic";
     // A halo keeps the words readable over the lines they fall on.
     ctx.setLineDash([]);
     ctx.lineWidth = 4 * devicePixelRatio;
@@ -141,9 +148,10 @@ const chart = (() => {
       const at = (sign) => line.values.map((value, i) => (value == null || line.halfWidths[i] == null ? null : value + sign * line.halfWidths[i]));
       data.push(at(1), at(-1));
       series.push(edge, { ...edge });
-      bands.push({ series: [series.length - 2, series.length - 1], fill: line.stroke + "30" });
+      bands.push({ series: [series.length - 2, series.length - 1], fill: line.stroke + "40" });
     }
-    for (const line of spec.lines) {
+    // The best is drawn last, over the others.
+    for (const line of [...spec.lines].sort((a, b) => Boolean(a.best) - Boolean(b.best))) {
       data.push(line.values);
       series.push({ stroke: line.stroke, width: line.best ? 2 : 1.4, dash: line.dash, points: { show: false } });
     }
@@ -175,7 +183,8 @@ const chart = (() => {
       plot,
       show([from, to], rows, full) {
         const range = full ? extent(spec.lines, ...rows) : typical(spec.lines, spec.reference, ...rows);
-        const [min, max] = padded(range);
+        const empty = !(range[0] <= range[1]);
+        const [min, max] = padded(empty && spec.reference != null ? [spec.reference, spec.reference] : range);
         plot.batch(() => {
           plot.setScale("x", { min: from, max: to });
           plot.setScale("y", { min, max });

@@ -79,7 +79,9 @@
     show();
   }
 
-  const width = () => Math.max(280, Math.floor(open.section.querySelector(".plot").clientWidth || 700));
+  // Before printing the layout is still the screen's; 700 px is an A4 page between its margins.
+  const onPaper = () => document.documentElement.classList.contains("paper");
+  const width = () => (onPaper() ? 700 : Math.max(280, Math.floor(open.section.querySelector(".plot").clientWidth)));
 
   function show() {
     const { trial, span } = open;
@@ -164,7 +166,7 @@
     if (!open?.legends || open.row === row) return;
     open.row = row;
     open.legends.forEach((tell) => tell(row));
-    open.section.querySelector(".clock").textContent = row == null ? "drag to zoom" : `t = ${fixed(open.trial.time[row], 4)} s`;
+    open.section.querySelector(".clock").textContent = row == null ? "drag to zoom" : `t = ${fixed(open.trial.time[row], 4 - Math.floor(Math.log10(open.span[1] - open.span[0])))} s`;
   }
 
   // ---- choices
@@ -225,7 +227,9 @@
     open = { trial: load(index), section };
     open.span = ends();
     toolbar(open.trial, section);
-    if (open.trial.methods.length === 0) ["stiffness", "damping", "innovation"].forEach((key) => section.querySelector(`[data-chart=${key}]`).remove());
+    if (open.trial.methods.length === 0 || open.trial.touches.length === 0) {
+      ["stiffness", "damping", "innovation"].forEach((key) => section.querySelector(`[data-chart=${key}]`).remove());
+    }
     draw();
   }
 

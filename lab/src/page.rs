@@ -106,7 +106,7 @@ impl Page {
         for trial in &self.trials {
             trial.check()?;
         }
-        let budget = thin::budget(self.trials.len());
+        let budget = thin::budget(&self.trials);
         let shown: Vec<Vec<usize>> = self.trials.iter().map(|trial| thin::rows(trial, budget)).collect();
         document::open(self, out)?;
         for (index, (trial, rows)) in self.trials.iter().zip(&shown).enumerate() {

@@ -1,6 +1,6 @@
 //! The answer in plain words, of one recording and of many.
 
-use super::quantity::{percent, plain, seconds, with_interval};
+use super::quantity::{percent, plain, rounded, seconds, with_interval};
 use super::{Method, Page, Summary, Trial};
 use maud::{Markup, html};
 
@@ -45,9 +45,9 @@ pub(super) fn of_trial(trial: &Trial) -> Markup {
 fn found(trial: &Trial, method: &Method, summary: Summary, lasted: &Markup) -> Markup {
     let units = trial.units;
     let best = match trial.methods.len() {
-        1 => html! { "which predicted the measured force to " (percent(summary.rmse_percent)) },
+        1 => html! { "which predicted the measured force with an error of " (percent(summary.rmse_percent)) },
         n => {
-            html! { "which of " (n) " methods predicted the measured force best, to " (percent(summary.rmse_percent)) }
+            html! { "which of " (n) " methods predicted the measured force best, with an error of " (percent(summary.rmse_percent)) }
         }
     };
     html! {
@@ -96,8 +96,8 @@ pub(super) fn of_page(page: &Page) -> Markup {
 }
 
 fn span(values: impl Iterator<Item = f64> + Clone, unit: &str) -> String {
-    let least = plain(values.clone().fold(f64::INFINITY, f64::min), unit);
-    let greatest = plain(values.fold(f64::NEG_INFINITY, f64::max), unit);
+    let least = rounded(values.clone().fold(f64::INFINITY, f64::min), unit, 3);
+    let greatest = rounded(values.fold(f64::NEG_INFINITY, f64::max), unit, 3);
     if least == greatest { format!("of {least}") } else { format!("between {least} and {greatest}") }
 }
 

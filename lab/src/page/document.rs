@@ -137,7 +137,7 @@ fn toolbar() -> Markup {
                     button type="button" data-move="forth" aria-label="Later" { "→" }
                     button type="button" data-move="in" aria-label="Zoom in" { "+" }
                     button type="button" data-move="out" aria-label="Zoom out" { "−" }
-                    button type="button" data-move="all" { "Whole recording" }
+                    button type="button" data-move="all" aria-label="Whole recording" { "all" }
                     output.clock { "drag to zoom" }
                 }
             }
@@ -156,7 +156,7 @@ fn figures() -> Markup {
         (
             "stiffness",
             "Stiffness K",
-            "What each method believes at that moment, its 95 % interval as a band; dashed: the rig file. A good one settles soon after touching, and stays.",
+            "What each method believes, its 95 % interval as a band; dashed: the rig file. A good one settles soon and stays.",
         ),
         (
             "damping",

@@ -5,13 +5,18 @@ const PREFIXES: [(i32, &str); 9] =
 
 /// A value with its unit, to four significant digits.
 pub(super) fn plain(value: f64, unit: &str) -> String {
+    rounded(value, unit, 4)
+}
+
+/// A value with its unit, to `digits` significant digits.
+pub(super) fn rounded(value: f64, unit: &str, digits: i32) -> String {
     if !value.is_finite() {
         return "unknown".into();
     }
     let (factor, prefix) = scale(value.abs());
     let scaled = value / factor;
-    let digits = trim(&fixed(scaled, 3 - magnitude(scaled)));
-    format!("{digits}\u{a0}{prefix}{unit}")
+    let figures = trim(&fixed(scaled, digits - 1 - magnitude(scaled)));
+    format!("{figures}\u{a0}{prefix}{}", unit.replace(' ', "\u{a0}"))
 }
 
 /// A value with the half-width of its interval, to two significant digits of the latter.
@@ -22,7 +27,9 @@ pub(super) fn with_interval(value: f64, half_width: f64, unit: &str) -> String {
     let (factor, prefix) = scale(value.abs().max(half_width));
     let decimals = 1 - magnitude(half_width / factor);
     let (value, half_width) = (fixed(value / factor, decimals), fixed(half_width / factor, decimals));
-    format!("{value}\u{a0}±\u{a0}{half_width}\u{a0}{prefix}{unit}")
+    // On a phone a line may break before the interval, and nowhere else.
+    let unit = unit.replace(' ', "\u{a0}");
+    format!("{value} ±\u{a0}{half_width}\u{a0}{prefix}{unit}")
 }
 
 /// Seconds; never kiloseconds.

@@ -2,7 +2,7 @@
 
 use super::answer::time_in_contact;
 use super::embed::colour;
-use super::quantity::{percent, plain, with_interval};
+use super::quantity::{percent, plain, rounded, with_interval};
 use super::{Method, Page, Summary, Trial};
 use maud::{Markup, html};
 
@@ -73,7 +73,7 @@ fn difference(value: f64, nominal: f64) -> String {
     let ratio = value / nominal;
     match ratio {
         _ if !ratio.is_finite() => String::new(),
-        _ if ratio.abs() >= 10.0 => format!("{} times", plain(ratio, "").trim_end()),
+        _ if ratio.abs() >= 10.0 => format!("{} times", rounded(ratio, "", 2).trim_end()),
         _ if (ratio - 1.0).abs() < 5e-4 => "as stated".into(),
         _ if ratio > 1.0 => format!("+{}", percent(100.0 * (ratio - 1.0))),
         _ => percent(100.0 * (ratio - 1.0)),

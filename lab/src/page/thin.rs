@@ -4,14 +4,15 @@ use super::Trial;
 
 /// More rows than this a screen cannot show, and nine methods of them already weigh 3 MB.
 const ROWS_OF_A_TRIAL: usize = 12_000;
-/// What the trials of a page share, so that twenty recordings weigh no more than a few.
-const ROWS_OF_A_PAGE: usize = 40_000;
+/// Numbers that the trials of a page share (at 5.3 bytes each), so that twenty recordings weigh no more than a few.
+const NUMBERS_OF_A_PAGE: usize = 2_000_000;
 /// Below this a picture is no longer one.
 const FEWEST: usize = 500;
 
-/// Rows that each of `trials` trials may show.
-pub(super) fn budget(trials: usize) -> usize {
-    (ROWS_OF_A_PAGE / trials.max(1)).clamp(FEWEST, ROWS_OF_A_TRIAL)
+/// Rows that each trial of a page may show.
+pub(super) fn budget(trials: &[Trial]) -> usize {
+    let columns: usize = trials.iter().map(|trial| 5 + 5 * trial.methods.len()).sum();
+    (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST, ROWS_OF_A_TRIAL)
 }
 
 /// At most `budget` rows of `trial`, in order: the first and the last, both sides of every edge of contact, and in
