@@ -245,6 +245,35 @@ fn a_full_disk_is_reported_wherever_it_strikes() {
     page.write(&mut Full(whole)).expect("it fits");
 }
 
+/// Recordings that a picture might stumble over.
+fn odd() -> Vec<Trial> {
+    let mut vague = touching().trial("no interval is known.csv");
+    for method in &mut vague.methods {
+        method.summary = None;
+        method.stiffness_half_width.fill(f32::INFINITY);
+        method.damping_half_width.fill(f32::NAN);
+    }
+    let mut astray = touching().trial("one method diverges.csv");
+    astray.methods[2].stiffness.iter_mut().for_each(|stiffness| *stiffness *= 1e30);
+    astray.nominal_stiffness = 3.0e6;
+    let mut epoch = touching().trial("clock since 1970.csv");
+    epoch.time.iter_mut().for_each(|time| *time += 1.7e9);
+    let mut nan = touching().trial("nothing is a number.csv");
+    nan.force.fill(f32::NAN);
+    nan.penetration.fill(0.0);
+    nan.methods.iter_mut().for_each(|method| method.stiffness.fill(f32::NAN));
+    nan.nominal_stiffness = f64::NAN;
+    vec![
+        vague,
+        astray,
+        epoch,
+        nan,
+        Touching { seconds: 0.0, ..touching() }.trial("empty.csv"),
+        Touching { seconds: 0.001, ..touching() }.trial("one sample.csv"),
+        Touching { methods: 0, ..touching() }.trial("no methods.csv"),
+    ]
+}
+
 /// Leaves the pages where a person can open them.
 #[test]
 fn pages_to_look_at() {
@@ -264,6 +293,7 @@ fn pages_to_look_at() {
         ("afm", AFM.page("cantilever on a cell")),
         ("nine", Touching { methods: 9, ..BENCH }.page("bench A")),
         ("many", page("bench A", many)),
+        ("odd", page("odd ones", odd())),
     ];
     for (name, page) in pages {
         std::fs::write(folder.join(format!("{name}.html")), written(&page)).expect("cargo made this folder");
