@@ -76,17 +76,22 @@ const chart = (() => {
     return [least > low - slack ? Math.min(low, least) : low, greatest < high + slack ? Math.max(high, greatest) : high];
   }
 
+  function everything({ lines, reference }, from, to) {
+    const [low, high] = extent(lines, from, to);
+    return reference == null ? [low, high] : [Math.min(low, reference), Math.max(high, reference)];
+  }
+
   function padded([low, high]) {
     if (!(low <= high)) return [-1, 1];
     const margin = 0.08 * (high - low) || 0.1 * Math.abs(high) || 1;
     return [low - margin, high + margin];
   }
 
-  function axes(title, unit, last) {
+  function axes(title, unit, last, since) {
     const common = () => ({ stroke: css("--muted"), grid: { stroke: css("--grid"), width: 1 }, ticks: { show: false }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" });
     const reach = (u) => Math.max(Math.abs(u.scales.y.min), Math.abs(u.scales.y.max));
     const time = { ...common(), values: (u, ticks, i, space, step) => ticks.map((t) => fixed(t, decimals(step))), size: 28, space: 70 };
-    if (last) Object.assign(time, { label: "time, s", labelSize: 20, size: 28 });
+    if (last) Object.assign(time, { label: since, labelSize: 20 });
     const values = (u, ticks, i, space, step) => {
       const { factor } = scale(reach(u));
       return ticks.map((tick) => fixed(tick / factor, decimals(step / factor)));
@@ -157,7 +162,7 @@ const chart = (() => {
     }
     const plot = new uPlot({
       width: shared.width, height: spec.last ? 238 : 218, series, bands,
-      axes: axes(spec.short, spec.unit, spec.last),
+      axes: axes(spec.short, spec.unit, spec.last, shared.since),
       padding: [10, 12, 0, 0],
       legend: { show: false },
       scales: { x: { time: false, auto: false, range: (u, low, high) => [low, high] }, y: { auto: false, range: (u, low, high) => [low, high] } },
@@ -182,7 +187,7 @@ const chart = (() => {
     return {
       plot,
       show([from, to], rows, full) {
-        const range = full ? extent(spec.lines, ...rows) : typical(spec.lines, spec.reference, ...rows);
+        const range = full ? everything(spec, ...rows) : typical(spec.lines, spec.reference, ...rows);
         const empty = !(range[0] <= range[1]);
         const [min, max] = padded(empty && spec.reference != null ? [spec.reference, spec.reference] : range);
         plot.batch(() => {

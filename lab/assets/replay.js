@@ -15,7 +15,10 @@
   function load(index) {
     const trial = description.trials[index];
     const contact = bytes(`t${index}-contact`);
-    const time = Array.from(doubles(`t${index}-time`));
+    const clock = doubles(`t${index}-time`);
+    // Ten digits under every tick read worse than one origin: a clock that counts from an epoch is shown from its start.
+    const origin = Math.abs(clock[0]) >= 1e5 ? clock[0] : 0;
+    const time = Array.from(clock, (seconds) => seconds - origin);
     // Out of contact nothing is estimated: a gap, not a line at zero. So are values that are no numbers.
     const column = (name, everywhere) =>
       Array.from(floats(`t${index}-${name}`), (value, i) => (isFinite(value) && (everywhere || contact[i]) ? value : null));
@@ -27,7 +30,7 @@
         damping: own("damping"), dampingHalfWidth: own("damping-half-width"), innovation: own("innovation"),
       };
     });
-    return { ...trial, time, methods, penetration: column("penetration", true), force: column("force", true), touches: touches(time, contact) };
+    return { ...trial, time, origin, methods, penetration: column("penetration", true), force: column("force", true), touches: touches(time, contact) };
   }
 
   function touches(time, contact) {
@@ -67,7 +70,8 @@
   function draw() {
     const { trial, section } = open;
     open.charts?.forEach(({ plot }) => plot.destroy());
-    const shared = { time: trial.time, touches: trial.touches, width: width() };
+    const since = trial.origin ? `time since ${trial.origin} s, s` : "time, s";
+    const shared = { time: trial.time, since, touches: trial.touches, width: width() };
     const hooks = { zoom, whole, cursor };
     const all = specs(trial);
     open.legends = [];

@@ -9,11 +9,7 @@ use palpate_lab::page::Trial;
 use reading::{bits, bytes, doubles, floats, prose, written};
 use std::io::{self, ErrorKind, Write};
 use std::time::{Duration, Instant};
-use synthetic::{AFM, BENCH, Touching, page};
-
-fn touching() -> Touching {
-    Touching { seconds: 3.0, period: 1.0, ..BENCH }
-}
+use synthetic::{AFM, BENCH, Touching, odd, page, touching};
 
 fn says(trial: Trial, sentence: &str) {
     let prose = prose(&written(&page("bench A", vec![trial])));
@@ -46,6 +42,21 @@ fn an_interval_that_includes_zero_is_called_no_finding() {
     let summary = trial.methods[0].summary.as_mut().expect("it touches");
     (summary.damping, summary.damping_half_width) = (5.0, 12.0);
     says(trial, "5 ± 12 N s/m (this damping cannot be told from none at all)");
+}
+
+#[test]
+fn the_table_tells_how_far_a_method_is_from_the_rig_file() {
+    let differs = |nominal: f64, words: &str| {
+        let mut trial = touching().trial("trial-1.csv");
+        trial.methods[0].summary.as_mut().expect("it touches").stiffness = 300.0;
+        trial.nominal_stiffness = nominal;
+        says(trial, words);
+    };
+    differs(200.0, "+50 %");
+    differs(400.0, "−25 %");
+    differs(300.0, "as stated");
+    differs(20.0, "15 times as much");
+    differs(3e6, "10\u{202f}000 times less");
 }
 
 #[test]
@@ -129,7 +140,7 @@ fn the_numbers_of_a_short_trial_come_back_to_the_bit() {
     trial.methods[1].stiffness[700] = f32::NAN;
     trial.methods[1].stiffness_half_width[701] = f32::INFINITY;
     let html = written(&page("bench A", vec![trial.clone()]));
-    assert!(prose(&html).contains("All 3\u{202f}000 samples shown"));
+    assert!(prose(&html).contains("Samples shown: all 3\u{202f}000."));
     assert_eq!(doubles(&html, "t0-time"), trial.time);
     assert_eq!(bytes(&html, "t0-contact"), trial.contact.iter().map(|&c| u8::from(c)).collect::<Vec<_>>());
     assert_eq!(bits(&floats(&html, "t0-penetration")), bits(&trial.penetration));
@@ -190,7 +201,7 @@ fn a_million_samples_are_thinned_and_keep_what_matters() {
     let kept = |row: usize| time.binary_search_by(|t| t.total_cmp(&trial.time[row])).is_ok();
     assert!(edges.clone().count() > 100);
     assert!(edges.flat_map(|row| [row - 1, row]).all(kept));
-    assert!(prose(&html).contains("samples shown (") && !prose(&html).contains("All 1"));
+    assert!(prose(&html).contains("samples shown (") && !prose(&html).contains("Samples shown: all"));
 }
 
 #[test]
@@ -243,35 +254,6 @@ fn a_full_disk_is_reported_wherever_it_strikes() {
         assert_eq!(error.kind(), ErrorKind::StorageFull);
     }
     page.write(&mut Full(whole)).expect("it fits");
-}
-
-/// Recordings that a picture might stumble over.
-fn odd() -> Vec<Trial> {
-    let mut vague = touching().trial("no interval is known.csv");
-    for method in &mut vague.methods {
-        method.summary = None;
-        method.stiffness_half_width.fill(f32::INFINITY);
-        method.damping_half_width.fill(f32::NAN);
-    }
-    let mut astray = touching().trial("one method diverges.csv");
-    astray.methods[2].stiffness.iter_mut().for_each(|stiffness| *stiffness *= 1e30);
-    astray.nominal_stiffness = 3.0e6;
-    let mut epoch = touching().trial("clock since 1970.csv");
-    epoch.time.iter_mut().for_each(|time| *time += 1.7e9);
-    let mut nan = touching().trial("nothing is a number.csv");
-    nan.force.fill(f32::NAN);
-    nan.penetration.fill(0.0);
-    nan.methods.iter_mut().for_each(|method| method.stiffness.fill(f32::NAN));
-    nan.nominal_stiffness = f64::NAN;
-    vec![
-        vague,
-        astray,
-        epoch,
-        nan,
-        Touching { seconds: 0.0, ..touching() }.trial("empty.csv"),
-        Touching { seconds: 0.001, ..touching() }.trial("one sample.csv"),
-        Touching { methods: 0, ..touching() }.trial("no methods.csv"),
-    ]
 }
 
 /// Leaves the pages where a person can open them.

@@ -107,7 +107,7 @@ fn pictures(trial: &Trial, shown: usize) -> Markup {
                 "): of every stretch of time the extremes of position, force and innovation, and the edges of contact. All samples are in estimates.csv."
             }
         } @else {
-            p.fine { "All " (count(total)) " samples shown; the same numbers are in estimates.csv." }
+            p.fine { "Samples shown: all " (count(total)) ". The same numbers are in estimates.csv." }
         }
     }
 }

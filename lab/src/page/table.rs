@@ -2,7 +2,7 @@
 
 use super::answer::time_in_contact;
 use super::embed::colour;
-use super::quantity::{percent, plain, rounded, with_interval};
+use super::quantity::{count, percent, plain, with_interval};
 use super::{Method, Page, Summary, Trial};
 use maud::{Markup, html};
 
@@ -73,7 +73,8 @@ fn difference(value: f64, nominal: f64) -> String {
     let ratio = value / nominal;
     match ratio {
         _ if !ratio.is_finite() => String::new(),
-        _ if ratio.abs() >= 10.0 => format!("{} times", rounded(ratio, "", 2).trim_end()),
+        _ if ratio >= 10.0 => format!("{} times as much", count(ratio.round() as usize)),
+        _ if ratio > 0.0 && ratio <= 0.1 => format!("{} times less", count((1.0 / ratio).round() as usize)),
         _ if (ratio - 1.0).abs() < 5e-4 => "as stated".into(),
         _ if ratio > 1.0 => format!("+{}", percent(100.0 * (ratio - 1.0))),
         _ => percent(100.0 * (ratio - 1.0)),

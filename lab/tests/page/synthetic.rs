@@ -162,6 +162,40 @@ pub fn page(rig: &str, trials: Vec<Trial>) -> Page {
     Page { rig: rig.into(), ran_on: "host".into(), settings, trials }
 }
 
+/// Three touches in three seconds.
+pub fn touching() -> Touching {
+    Touching { seconds: 3.0, period: 1.0, ..BENCH }
+}
+
+/// Recordings that a picture might stumble over.
+pub fn odd() -> Vec<Trial> {
+    let mut vague = touching().trial("no interval is known.csv");
+    for method in &mut vague.methods {
+        method.summary = None;
+        method.stiffness_half_width.fill(f32::INFINITY);
+        method.damping_half_width.fill(f32::NAN);
+    }
+    let mut astray = touching().trial("one method diverges.csv");
+    astray.methods[2].stiffness.iter_mut().for_each(|stiffness| *stiffness *= 1e30);
+    astray.nominal_stiffness = 3.0e6;
+    let mut epoch = touching().trial("clock since 1970.csv");
+    epoch.time.iter_mut().for_each(|time| *time += 1.7e9);
+    let mut nan = touching().trial("nothing is a number.csv");
+    nan.force.fill(f32::NAN);
+    nan.penetration.fill(0.0);
+    nan.methods.iter_mut().for_each(|method| method.stiffness.fill(f32::NAN));
+    nan.nominal_stiffness = f64::NAN;
+    vec![
+        vague,
+        astray,
+        epoch,
+        nan,
+        Touching { seconds: 0.0, ..touching() }.trial("empty.csv"),
+        Touching { seconds: 0.001, ..touching() }.trial("one sample.csv"),
+        Touching { methods: 0, ..touching() }.trial("no methods.csv"),
+    ]
+}
+
 trait Grow {
     fn push(&mut self, values: [f64; 5]);
     fn summarise(&self, trial: &Trial) -> Option<Summary>;
