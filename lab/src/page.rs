@@ -1,5 +1,12 @@
 //! `replay.html`: one self-contained page that shows a replay.
 
+mod answer;
+mod document;
+mod embed;
+mod quantity;
+mod table;
+mod thin;
+
 use std::io::{self, Write};
 
 /// Everything that the page shows. Pure data: nothing here knows how it was computed.
@@ -90,12 +97,55 @@ pub struct Summary {
 }
 
 impl Page {
-    /// Writes the page.
+    /// Writes the page. It needs nothing but itself: style, scripts and data are inside, and it forbids the browser
+    /// to fetch anything. A long trial is thinned to the rows that a screen can tell apart.
     ///
     /// # Errors
-    /// Whatever `out` reports.
+    /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] where the vectors of a trial differ in length.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        let _ = out;
-        Ok(())
+        for trial in &self.trials {
+            trial.check()?;
+        }
+        let budget = thin::budget(&self.trials);
+        let shown: Vec<Vec<usize>> = self.trials.iter().map(|trial| thin::rows(trial, budget)).collect();
+        document::open(self, out)?;
+        for (index, (trial, rows)) in self.trials.iter().zip(&shown).enumerate() {
+            let section = document::trial(self, index, trial, rows.len());
+            out.write_all(section.into_string().as_bytes())?;
+        }
+        embed::data(self, &shown, out)?;
+        document::close(out)
+    }
+}
+
+impl Trial {
+    fn check(&self) -> io::Result<()> {
+        let rows = self.time.len();
+        let common = [self.penetration.len(), self.force.len(), self.contact.len()];
+        let of_methods = self.methods.iter().flat_map(|method| method.columns().map(<[f32]>::len));
+        if common.into_iter().chain(of_methods).all(|len| len == rows) {
+            return Ok(());
+        }
+        let message = format!("{}: the columns of a trial must all have the {rows} rows of its time", self.name);
+        Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+    }
+
+    /// The method that predicted the force best: the one that the page quotes.
+    fn best(&self) -> Option<(usize, &Method, Summary)> {
+        let summarised = self.methods.iter().enumerate().filter_map(|(i, m)| m.summary.map(|s| (i, m, s)));
+        summarised.filter(|(_, _, s)| s.is_finite()).min_by(|a, b| a.2.rmse_percent.total_cmp(&b.2.rmse_percent))
+    }
+}
+
+impl Method {
+    /// In the order in which the page's script expects them.
+    fn columns(&self) -> [&[f32]; 5] {
+        [&self.stiffness, &self.stiffness_half_width, &self.damping, &self.damping_half_width, &self.innovation]
+    }
+}
+
+impl Summary {
+    fn is_finite(&self) -> bool {
+        self.stiffness.is_finite() && self.damping.is_finite() && self.rmse_percent.is_finite()
     }
 }

@@ -1,0 +1,183 @@
+//! The document around the numbers.
+
+use super::quantity::count;
+use super::{Page, Trial, answer, table};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::io::{self, Write};
+
+const STYLE: &str = concat!(include_str!("../../assets/uplot/uPlot.min.css"), include_str!("../../assets/replay.css"));
+const PLOTTING_LICENSE: &str = include_str!("../../assets/uplot/LICENSE");
+const PLOTTING: &str = include_str!("../../assets/uplot/uPlot.iife.min.js");
+const SCRIPTS: [&str; 3] = [
+    include_str!("../../assets/numbers.js"),
+    include_str!("../../assets/chart.js"),
+    include_str!("../../assets/replay.js"),
+];
+
+/// The page is a file that people pass on: the browser itself shall refuse whatever it might want from a network.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
+/// Everything before the first recording.
+pub(super) fn open(page: &Page, out: &mut impl Write) -> io::Result<()> {
+    let head = html! {
+        meta charset="utf-8";
+        meta http-equiv="Content-Security-Policy" content=(POLICY);
+        meta name="viewport" content="width=device-width, initial-scale=1";
+        meta name="color-scheme" content="light dark";
+        title { (page.rig) " – palpate replay" }
+        style { (PreEscaped(STYLE)) }
+    };
+    writeln!(out, r#"{}<html lang="en"><head>{}</head><body><main>"#, DOCTYPE.into_string(), head.into_string())?;
+    out.write_all(opening(page).into_string().as_bytes())
+}
+
+fn opening(page: &Page) -> Markup {
+    html! {
+        header {
+            p.eyebrow { "Palpate replay · estimated on " (page.ran_on) }
+            h1 { (page.rig) ": how stiff, how damped?" }
+            p.lead { @if let [only] = page.trials.as_slice() { (answer::of_trial(only)) } @else { (answer::of_page(page)) } }
+            p.law {
+                "The law is F = K x + B v. Stiffness K is the force that each bit of depth adds; damping B is the force that each bit of pressing speed adds."
+            }
+        }
+        @if page.trials.len() > 1 {
+            section aria-labelledby="all" { h2 #all { (page.trials.len()) " recordings" } (table::recordings(page)) }
+            (settings(page))
+        }
+    }
+}
+
+fn settings(page: &Page) -> Markup {
+    html! {
+        @if !page.settings.is_empty() {
+            section.settings aria-label="Settings" {
+                dl { @for (label, value) in &page.settings { div { dt { (label) } dd { (value) } } } }
+            }
+        }
+    }
+}
+
+/// The section of one recording, of which `shown` rows are drawn.
+pub(super) fn trial(page: &Page, index: usize, trial: &Trial, shown: usize) -> Markup {
+    let alone = page.trials.len() == 1;
+    html! {
+        article.trial #{ "trial-" (index + 1) } data-trial=(index) aria-labelledby={ "name-" (index + 1) } {
+            h2 #{ "name-" (index + 1) } { (trial.name) }
+            @if !alone {
+                (neighbours(page, index))
+                p.lead { (answer::of_trial(trial)) }
+            }
+            @if !trial.methods.is_empty() { (table::methods(page, trial)) }
+            (notices(trial))
+            @if alone { (settings(page)) }
+            @if shown > 0 { (pictures(trial, shown)) }
+        }
+    }
+}
+
+fn neighbours(page: &Page, index: usize) -> Markup {
+    html! {
+        nav.neighbours aria-label="Recordings beside this one" {
+            @if index > 0 { a href={ "#trial-" (index) } { "← previous" } }
+            span { (index + 1) " of " (page.trials.len()) }
+            @if index + 1 < page.trials.len() { a href={ "#trial-" (index + 2) } { "next →" } }
+        }
+    }
+}
+
+fn notices(trial: &Trial) -> Markup {
+    html! {
+        @if !trial.notices.is_empty() {
+            ul.notices aria-label="Notices" { @for notice in &trial.notices { li { (notice) } } }
+        }
+    }
+}
+
+fn pictures(trial: &Trial, shown: usize) -> Markup {
+    let total = trial.time.len();
+    html! {
+        section.pictures aria-label={ "Pictures of " (trial.name) } {
+            noscript { p.notices { "The pictures need JavaScript. All figures above stand without it, and every sample is in estimates.csv." } }
+        }
+        @if shown < total {
+            p.fine {
+                "1 of " (total.div_ceil(shown)) " samples shown (" (count(shown)) " of " (count(total))
+                "): of every stretch of time the extremes of position, force and innovation, and the edges of contact. All samples are in estimates.csv."
+            }
+        } @else {
+            p.fine { "Samples shown: all " (count(total)) ". The same numbers are in estimates.csv." }
+        }
+    }
+}
+
+/// Everything after the data: what the script draws into, and the script.
+pub(super) fn close(out: &mut impl Write) -> io::Result<()> {
+    let templates = html! { (toolbar()) (figures()) };
+    writeln!(out, "</main>{}", templates.into_string())?;
+    writeln!(out, "<script>/*\n{PLOTTING_LICENSE}\n*/\n{PLOTTING}</script>")?;
+    for script in SCRIPTS {
+        writeln!(out, "<script>\n{script}</script>")?;
+    }
+    writeln!(out, "</body></html>")
+}
+
+fn toolbar() -> Markup {
+    html! {
+        template #toolbar {
+            div.toolbar role="group" aria-label="What the pictures show" {
+                div.choice.methods role="group" aria-label="Methods shown" {}
+                div.choice {
+                    label { "95 % bands " select.bands {} }
+                    button.range type="button" aria-pressed="false" title="Show every spike instead of the usual range" { "Full height" }
+                }
+                div.choice.time role="group" aria-label="Time shown" {
+                    button type="button" data-move="back" aria-label="Earlier" { "←" }
+                    button type="button" data-move="forth" aria-label="Later" { "→" }
+                    button type="button" data-move="in" aria-label="Zoom in" { "+" }
+                    button type="button" data-move="out" aria-label="Zoom out" { "−" }
+                    button type="button" data-move="all" aria-label="Whole recording" { "all" }
+                    output.clock { "drag to zoom" }
+                }
+            }
+        }
+    }
+}
+
+fn figures() -> Markup {
+    let figures = [
+        (
+            "position",
+            "Position",
+            "Depth of the tool: above the dashed line it is below the surface. Shaded: in contact.",
+        ),
+        ("force", "Force", "What the sensor felt, positive when the tool pushes."),
+        (
+            "stiffness",
+            "Stiffness K",
+            "What each method believes, its 95 % interval as a band; dashed: the rig file. A good one settles soon and stays.",
+        ),
+        (
+            "damping",
+            "Damping B",
+            "The same for damping, which needs movement to show: while the tool holds still, nothing tells it.",
+        ),
+        (
+            "innovation",
+            "Innovation",
+            "Measured force minus what the estimate before this sample foretold. Only noise around zero means that the law explains the touch.",
+        ),
+    ];
+    html! {
+        template #figures {
+            @for (key, title, explanation) in figures {
+                figure data-chart=(key) {
+                    figcaption { h3 { (title) } p { (explanation) } }
+                    div.legend aria-hidden="true" {}
+                    div.plot role="img" aria-label={ (title) " over time. " (explanation) } {}
+                }
+            }
+        }
+    }
+}

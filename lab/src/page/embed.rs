@@ -1,0 +1,107 @@
+//! The data inside the page: one JSON element that describes, and base64 columns that carry the numbers.
+
+use super::{Page, Trial, Units};
+use base64::{engine::general_purpose::STANDARD, write::EncoderWriter};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// The names under which the script finds the columns of a method, in the order of `Method::columns`.
+const OF_A_METHOD: [&str; 5] = ["stiffness", "stiffness-half-width", "damping", "damping-half-width", "innovation"];
+
+#[derive(Serialize)]
+struct Description<'a> {
+    trials: Vec<DescribedTrial<'a>>,
+}
+
+#[derive(Serialize)]
+struct DescribedTrial<'a> {
+    units: DescribedUnits<'a>,
+    nominal_stiffness: f64,
+    nominal_damping: f64,
+    rows: usize,
+    best: Option<usize>,
+    methods: Vec<DescribedMethod<'a>>,
+}
+
+#[derive(Serialize)]
+struct DescribedUnits<'a> {
+    position: &'a str,
+    force: &'a str,
+    stiffness: &'a str,
+    damping: &'a str,
+}
+
+#[derive(Serialize)]
+struct DescribedMethod<'a> {
+    name: &'a str,
+    title: &'a str,
+    colour: usize,
+}
+
+/// Writes the description and the columns of every trial, reduced to the rows in `shown`.
+pub(super) fn data(page: &Page, shown: &[Vec<usize>], out: &mut impl Write) -> io::Result<()> {
+    let trials = page.trials.iter().zip(shown).map(|(trial, rows)| describe(page, trial, rows.len())).collect();
+    let json = serde_json::to_string(&Description { trials })?;
+    // A name may hold "</script>", and only "<" can end a script element.
+    let json = json.replace('<', "\\u003c");
+    writeln!(out, r#"<script type="application/json" id="description">{json}</script>"#)?;
+    for (index, (trial, rows)) in page.trials.iter().zip(shown).enumerate() {
+        columns(index, trial, rows, out)?;
+    }
+    Ok(())
+}
+
+fn describe<'a>(page: &Page, trial: &'a Trial, rows: usize) -> DescribedTrial<'a> {
+    let Units { position, force, stiffness, damping } = trial.units;
+    let describe_method =
+        |m: &'a super::Method| DescribedMethod { name: m.name, title: m.title, colour: colour(page, m.name) };
+    DescribedTrial {
+        units: DescribedUnits { position, force, stiffness, damping },
+        nominal_stiffness: trial.nominal_stiffness,
+        nominal_damping: trial.nominal_damping,
+        rows,
+        best: trial.best().map(|(method, ..)| method),
+        methods: trial.methods.iter().map(describe_method).collect(),
+    }
+}
+
+/// A method wears one colour on the whole page, even where a trial lacks some of the others.
+pub(super) fn colour(page: &Page, name: &str) -> usize {
+    let mut seen: Vec<&str> = Vec::new();
+    for method in page.trials.iter().flat_map(|trial| &trial.methods) {
+        if !seen.contains(&method.name) {
+            seen.push(method.name);
+        }
+    }
+    seen.iter().position(|other| *other == name).unwrap_or(0)
+}
+
+fn columns(index: usize, trial: &Trial, rows: &[usize], out: &mut impl Write) -> io::Result<()> {
+    // Single precision would round a clock that counts from an epoch.
+    column(out, &format!("t{index}-time"), rows, |row| trial.time[row].to_le_bytes())?;
+    column(out, &format!("t{index}-contact"), rows, |row| [u8::from(trial.contact[row])])?;
+    column(out, &format!("t{index}-penetration"), rows, |row| trial.penetration[row].to_le_bytes())?;
+    column(out, &format!("t{index}-force"), rows, |row| trial.force[row].to_le_bytes())?;
+    for (number, method) in trial.methods.iter().enumerate() {
+        for (name, values) in OF_A_METHOD.into_iter().zip(method.columns()) {
+            column(out, &format!("t{index}-m{number}-{name}"), rows, |row| values[row].to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+fn column<const N: usize>(
+    out: &mut impl Write,
+    id: &str,
+    rows: &[usize],
+    bytes: impl Fn(usize) -> [u8; N],
+) -> io::Result<()> {
+    write!(out, r#"<script type="application/octet-stream" id="{id}">"#)?;
+    let mut encoder = EncoderWriter::new(&mut *out, &STANDARD);
+    for &row in rows {
+        encoder.write_all(&bytes(row))?;
+    }
+    encoder.finish()?;
+    drop(encoder);
+    writeln!(out, "</script>")
+}
