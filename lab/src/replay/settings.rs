@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use palpate::{
-    BENCH_WINDOW, BenchConfig, BlockConfig, ContactLoss, EwrlsConfig, FrontEnd, FrontEndConfig, GateConfig,
+    BENCH_WINDOW, Bench, BenchConfig, BlockConfig, ConfigError, ContactLoss, EwrlsConfig, FrontEndConfig, GateConfig,
     GradientConfig, LowPass, Method, Methods, Observation, ResetRlsConfig, Sample, Sensors, SprlsConfig, StreamConfig,
     Units, Velocity,
 };
@@ -115,6 +115,18 @@ impl Options {
         .into()
     }
 
+    /// A setting that the library refused, as the option that set it.
+    fn fault(&self, error: ConfigError) -> UsageError {
+        let (option, found) = match error.parameter {
+            "forgetting_factor" => ("--forgetting", self.forgetting),
+            "initial_covariance" => ("--initial-covariance", self.initial_covariance),
+            "perturbation_gain" => ("--sprls-beta", self.sprls_beta),
+            "perturbation_sensitivity" => ("--sprls-gamma", self.sprls_gamma),
+            other => return UsageError::new(other, "a setting that does not fit the recording", error.expected),
+        };
+        UsageError::new(option, found, error.expected)
+    }
+
     /// The cut-off for a sample period, and a word where it had to be lowered.
     fn cutoff(&self, period: f64) -> Result<(f64, Option<String>), UsageError> {
         let limit = f64::from(LowPass::LIMIT) / period;
@@ -196,11 +208,8 @@ impl Plan {
             gate: gate(&figures),
             units,
         };
-        // Refused here, before the long run and as the command line's fault.
-        FrontEnd::new(front_end)?;
         let config = bench(front_end, &figures, options);
-        palpate::Bench::new(&config)
-            .map_err(|error| UsageError::new("the settings", error.parameter, error.expected))?;
+        Bench::new(&config).map_err(|error| options.fault(error))?;
         Ok(Self {
             config,
             methods: in_order(&options.methods),
@@ -280,13 +289,21 @@ fn bench(front_end: FrontEndConfig, figures: &Figures, options: &Options) -> Ben
         movement_memory: options.window,
     };
     let initial_covariance = options.initial_covariance;
+    // Room to grow from wherever it starts, within what the library takes.
+    let covariance_limit = (100.0 * initial_covariance).clamp(1e6, 1e9);
     BenchConfig {
         stream,
         methods: options.methods.iter().fold(Methods::default(), |methods, method| methods.with(*method)),
-        rls: EwrlsConfig { initial_covariance, ..EwrlsConfig::rls() },
-        ewrls: EwrlsConfig { initial_covariance, forgetting_factor: options.forgetting, ..EwrlsConfig::default() },
+        rls: EwrlsConfig { initial_covariance, covariance_limit, ..EwrlsConfig::rls() },
+        ewrls: EwrlsConfig {
+            initial_covariance,
+            covariance_limit,
+            forgetting_factor: options.forgetting,
+            ..EwrlsConfig::default()
+        },
         sprls: SprlsConfig {
             initial_covariance,
+            covariance_limit,
             perturbation_gain: options.sprls_beta,
             perturbation_sensitivity: options.sprls_gamma,
             ..SprlsConfig::default()
