@@ -5,6 +5,7 @@ use crate::contact::Impedance;
 use crate::error::{ConfigError, require};
 use crate::estimate::Flags;
 use crate::law::Step;
+use crate::math::larger;
 use crate::sym2::Sym2;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
@@ -76,7 +77,7 @@ impl Sums {
             s.misfit.stiffness += x * e;
             s.misfit.damping += v * e;
             s.misfit_energy += e * e;
-            s.largest_misfit = if e.abs() > s.largest_misfit { e.abs() } else { s.largest_misfit };
+            s.largest_misfit = larger(e.abs(), s.largest_misfit);
         });
         s
     }
@@ -115,7 +116,7 @@ impl Solution {
         let explained =
             self.correction.stiffness * sums.misfit.stiffness + self.correction.damping * sums.misfit.damping;
         let left = sums.misfit_energy - explained;
-        if left > 0.0 { left / (sums.samples - 2.0).max(1.0) } else { 0.0 }
+        if left > 0.0 { left / larger(sums.samples - 2.0, 1.0) } else { 0.0 }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::cubic::depressed_root;
 use crate::error::ConfigError;
 use crate::estimate::Flags;
 use crate::law::{Law, Step};
-use crate::math::sqrt;
+use crate::math::{larger, sqrt};
 use crate::sym2::Sym2;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
@@ -122,7 +122,7 @@ impl BlockLeastMeanFourth {
             Direction::Newton => powers.hessian.solve(descent, self.config.independence_floor),
         };
         let d = newton.filter(|d| d.is_finite()).unwrap_or(descent);
-        let largest = d.stiffness.abs().max(d.damping.abs());
+        let largest = larger(d.stiffness.abs(), d.damping.abs());
         if largest.is_nan() || largest <= 0.0 {
             return None;
         }
@@ -149,8 +149,8 @@ impl Powers {
             s.hessian = s.hessian.plus_outer(square, x, v);
             s.square += square;
             s.sixth += cube * cube;
-            s.reach.stiffness = s.reach.stiffness.max(x.abs());
-            s.reach.damping = s.reach.damping.max(v.abs());
+            s.reach.stiffness = larger(x.abs(), s.reach.stiffness);
+            s.reach.damping = larger(v.abs(), s.reach.damping);
         });
         Some(s)
     }

@@ -5,6 +5,7 @@ use crate::contact::Impedance;
 use crate::error::ConfigError;
 use crate::estimate::Flags;
 use crate::law::{Law, Step};
+use crate::math::larger;
 use crate::window::Recent;
 
 /// `theta += step u` along `u = -g/|g|`, `g = -sum phi e`, where the step minimises `sum (e - step phi'u)^2` over the
@@ -29,7 +30,7 @@ impl BlockLeastMeanSquare {
 /// The step along the steepest descent of `sum (e - step)^2`; zero where the gradient is zero or no step is finite.
 fn steepest_step(sums: &Sums) -> Impedance {
     let Impedance { stiffness, damping } = sums.misfit;
-    let largest = stiffness.abs().max(damping.abs());
+    let largest = larger(stiffness.abs(), damping.abs());
     if largest <= 0.0 {
         return Impedance::ZERO;
     }

@@ -1,6 +1,7 @@
 //! How sure an estimate is, and how that is carried along by a recursive law.
 
 use crate::contact::{Impedance, Observation};
+use crate::math::smaller;
 use crate::sym2::Sym2;
 
 /// The parts of the uncertainty of one estimate, in internal units.
@@ -131,7 +132,7 @@ impl Propagation {
 
     /// Share of the memory that is filled.
     pub fn fill(&self, forgetting: f32) -> f32 {
-        (self.weight * (1.0 - forgetting)).min(1.0)
+        smaller(self.weight * (1.0 - forgetting), 1.0)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The covariance of recursive least squares, factored so that it cannot lose its sign.
 
 use crate::contact::{Impedance, Observation};
+use crate::math::smaller;
 use crate::sym2::Sym2;
 
 /// `P = U diag(d1, d2) U'` with `U = [[1, u], [0, 1]]` (Bierman, Factorization Methods for Discrete Sequential
@@ -49,8 +50,8 @@ impl Covariance {
     /// Keeps both factors at or below `limit`; whether one had to be cut.
     pub fn limit(&mut self, limit: f32) -> bool {
         let cut = self.d1 > limit || self.d2 > limit;
-        self.d1 = self.d1.min(limit);
-        self.d2 = self.d2.min(limit);
+        self.d1 = smaller(self.d1, limit);
+        self.d2 = smaller(self.d2, limit);
         cut
     }
 

@@ -4,7 +4,7 @@ use crate::contact::Impedance;
 use crate::error::{ConfigError, require_not_negative};
 use crate::front_end::FrontEnd;
 use crate::law::Step;
-use crate::math::sqrt;
+use crate::math::{larger, sqrt};
 use serde::{Deserialize, Serialize};
 
 bitflags::bitflags! {
@@ -144,7 +144,7 @@ impl Assessor {
         let c = &step.confidence;
         let stiffness = step.estimate.stiffness;
         let rounding = self.rounding.damping + stiffness * stiffness * self.rounding.stiffness;
-        let noise = (c.noise_variance * self.correlated_samples).max(rounding);
+        let noise = larger(c.noise_variance * self.correlated_samples, rounding);
         let t = student(c.samples / self.correlated_samples - 2.0);
         let surface = stiffness.abs() * self.half_count;
         let width = |gain: f32, transient: f32, remainder: f32, offset: f32| {

@@ -4,6 +4,7 @@ use crate::contact::{Observation, Sample};
 use crate::error::{ConfigError, require, require_positive};
 use crate::filter::{LowPass, LowPassState};
 use crate::gate::{GateConfig, GateState};
+use crate::math::larger;
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
 
@@ -133,7 +134,7 @@ impl FrontEnd {
     /// filter's noise bandwidth, at least 1.
     pub fn correlated_samples(&self) -> f32 {
         let cycles = self.config.cutoff * self.config.period;
-        (1.0 / (2.0 * LowPass::NOISE_BANDWIDTH * cycles)).max(1.0)
+        larger(1.0 / (2.0 * LowPass::NOISE_BANDWIDTH * cycles), 1.0)
     }
 
     /// Takes one sample.
@@ -154,7 +155,7 @@ impl FrontEnd {
                 penetration * self.config.units.penetration,
                 force * self.config.units.force,
             );
-        let depth = if self.config.bilateral { penetration } else { penetration.max(0.0) };
+        let depth = if self.config.bilateral { penetration } else { larger(penetration, 0.0) };
         let before = state.before.replace((depth, force));
         let filter = self.filter_for(elapsed);
         let (Some((depth_before, force_before)), Some(filter)) = (before, filter) else {

@@ -6,6 +6,7 @@ use crate::covariance::Covariance;
 use crate::error::{ConfigError, require, require_positive};
 use crate::estimate::Flags;
 use crate::law::Step;
+use crate::math::smaller;
 
 /// Forgetting factor, at most, over which the noise is measured: a memory of a thousand samples follows a sensor that
 /// changes, and a sum in single precision over it is exact to 1e-4.
@@ -47,7 +48,7 @@ impl RecursiveState {
     }
 
     pub(crate) fn step(&mut self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) -> Step {
-        let forgetting = forgetting.min(NOISE_FORGETTING);
+        let forgetting = smaller(forgetting, NOISE_FORGETTING);
         self.uncertainty.advance(o, gain, innovation, forgetting);
         Step {
             estimate: self.estimate,

@@ -4,6 +4,7 @@ use crate::confidence::Ignorance;
 use crate::error::{ConfigError, require, require_not_negative};
 use crate::estimate::Flags;
 use crate::law::{Law, Step};
+use crate::math::smaller;
 use crate::recursive::{RecursiveState, check_ignorance, check_initial_covariance};
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
@@ -84,7 +85,7 @@ impl Sprls {
         let level = self.config.perturbation_sensitivity * innovation * innovation;
         // From 2^23 on a single-precision number is whole already.
         let steps = if level < 8_388_608.0 { (level + 0.5) as u32 as f32 } else { level };
-        (self.config.perturbation_gain * steps).min(self.config.covariance_limit)
+        smaller(self.config.perturbation_gain * steps, self.config.covariance_limit)
     }
 }
 

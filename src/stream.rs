@@ -5,6 +5,7 @@ use crate::error::ConfigError;
 use crate::estimate::{Assessor, Estimate, Flags, Sensors};
 use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection};
 use crate::law::Law;
+use crate::math::{larger, smaller};
 use crate::window::{Recent, Window};
 use serde::{Deserialize, Serialize};
 
@@ -121,8 +122,8 @@ impl<const N: usize> Stream<N> {
             (self.low, self.high) = (penetration, penetration);
         }
         let fade = 0.5 * self.movement_decay * (self.high - self.low);
-        self.low = (self.low + fade).min(penetration);
-        self.high = (self.high - fade).max(penetration);
+        self.low = smaller(self.low + fade, penetration);
+        self.high = larger(self.high - fade, penetration);
         self.high - self.low
     }
 
