@@ -275,7 +275,7 @@ fn a_model_replaces_the_rig_and_an_unwritable_place_is_named_before_the_run() {
 }
 
 #[test]
-fn every_example_rig_is_read_round_trips_and_those_of_the_bench_run() {
+fn every_example_rig_reads_round_trips_and_runs_into_its_surface() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("rigs");
     let mut seen = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -283,9 +283,10 @@ fn every_example_rig_is_read_round_trips_and_those_of_the_bench_run() {
         let rig = Rig::read(&path).unwrap();
         assert_eq!(rig, Rig::parse(&rig.to_toml(), "again").unwrap(), "{}", path.display());
         let trial = simulate(&rig, 1, "rig").unwrap();
-        assert_eq!(trial.notices, Vec::<String>::new(), "{}", path.display());
+        // "note:" says that sensors left to the recording are simulated as ideal; a warning would be a fault of the file.
+        assert!(trial.notices.iter().all(|notice| notice.starts_with("note:")), "{}: {:?}", path.display(), trial.notices);
         assert!(largest(trial.recording.force.as_ref().unwrap()) > 0.0);
         seen += 1;
     }
-    assert!(seen >= 4, "{seen} example rigs");
+    assert!(seen >= 9, "{seen} example rigs");
 }

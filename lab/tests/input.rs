@@ -1,0 +1,313 @@
+//! Rig files, recordings and sensor estimates as users bring them: good, odd and broken.
+
+use std::path::{Path, PathBuf};
+
+use palpate_lab::recording::Recording;
+use palpate_lab::rig::{Coordinate, Rig};
+use palpate_lab::sensors::{Figures, quantum, white_noise};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+const LINEAR: &str = "[rig]\nname = \"a\"\ncoordinate = \"linear\"\n";
+const ROTARY: &str = "[rig]\nname = \"a\"\ncoordinate = \"rotary\"\n";
+
+fn rig(text: &str) -> Rig {
+    Rig::parse(text, "rig.toml").unwrap()
+}
+
+fn rig_error(text: &str) -> String {
+    Rig::parse(text, "rig.toml").unwrap_err().to_string()
+}
+
+fn read(bytes: impl AsRef<[u8]>, rig_text: &str) -> Result<Recording, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("trial.csv");
+    std::fs::write(&path, bytes).unwrap();
+    Recording::read(&path, &rig(rig_text)).map_err(|error| error.to_string())
+}
+
+fn says(error: &str, words: &[&str]) {
+    for word in words {
+        assert!(error.contains(word), "\"{error}\" lacks \"{word}\"");
+    }
+}
+
+fn refuses(bytes: impl AsRef<[u8]>, words: &[&str]) {
+    says(&read(bytes, LINEAR).unwrap_err(), words);
+}
+
+#[test]
+fn a_full_rig_survives_writing_and_reading_in_both_coordinates() {
+    let linear = r#"
+[rig]
+name = "quotes \" and \\ and µ"
+coordinate = "linear"
+[columns]
+force = "f meas"
+time = "t"
+[drive]
+mass_kg = 1
+viscous_n_s_m = 0
+[contact]
+surface_m = -1.25e-7
+stiffness_n_m = 3e12
+damping_n_s_m = 1e-9
+bilateral = true
+[sensors]
+position_resolution_m = 0
+force_noise_n = 1.1e-12
+force_zero_n = -3
+[control]
+proportional_n_m = 775
+derivative_n_s_m = 10
+[reference]
+free_depth_m = -1e-6
+contact_depth_m = 1e-6
+period_s = 2
+contact_s = 1
+smoothing_s = 0.1
+[simulation]
+rate_hz = 50000
+[[effect]]
+name = "adhesion"
+force_n = 0.25
+force_n_ci95 = [0.2, 0.3]
+"odd key" = { a = 1 }
+[[effect]]
+name = "backlash"
+"#;
+    let first = rig(linear);
+    let text = first.to_toml();
+    assert_eq!(Rig::parse(&text, "again").unwrap(), first, "{text}");
+    assert_eq!(first.effects.iter().map(|effect| effect.name.as_str()).collect::<Vec<_>>(), ["adhesion", "backlash"]);
+    let rotary = rig(&(ROTARY.to_owned()
+        + "[drive]\ninertia_kg_m2 = 0.1\nviscous_n_m_s_rad = 1\n[sensors]\ntorque_resolution_n_m = 0.1\n\
+           [contact]\nsurface_rad = 1\nstiffness_n_m_rad = 2\ndamping_n_m_s_rad = 3\n"));
+    let text = rotary.to_toml();
+    assert_eq!(Rig::parse(&text, "again").unwrap(), rotary, "{text}");
+    assert!(text.contains("inertia_kg_m2 = 0.1") && text.contains("stiffness_n_m_rad = 2.0"), "{text}");
+}
+
+#[test]
+fn a_rig_at_fault_is_told_by_line_key_finding_and_expectation() {
+    let drive = |lines: &str| format!("{LINEAR}[drive]\n{lines}\n");
+    says(&rig_error(&drive("mass_kg = 1\nviscous_n_s_m = 1\nmas_kg = 2")), &["rig.toml:7: [drive] mas_kg", "unknown", "mass_kg perhaps"]);
+    says(&rig_error(&drive("mass_kg = 0.0\nviscous_n_s_m = 1")), &["rig.toml:5: [drive] mass_kg: found 0.0", "above zero"]);
+    says(&rig_error(&drive("mass_kg = -1\nviscous_n_s_m = 1")), &["found -1"]);
+    says(&rig_error(&drive("mass_kg = nan\nviscous_n_s_m = 1")), &["found nan"]);
+    says(&rig_error(&drive("mass_kg = 1\nviscous_n_s_m = inf")), &["rig.toml:6", "found inf"]);
+    says(&rig_error(&drive("mass_kg = \"1\"\nviscous_n_s_m = 1")), &["the text \"1\"", "a number above zero"]);
+    says(&rig_error(&drive("viscous_n_s_m = 1")), &["rig.toml:4: [drive] mass_kg: found nothing"]);
+    says(&rig_error(&drive("inertia_kg_m2 = 1\nviscous_n_s_m = 1")), &["rig.toml:5: [drive] inertia_kg_m2", "rotary", "expected mass_kg"]);
+    says(&rig_error(&format!("{ROTARY}[drive]\nmass_kg = 1\n")), &["mass_kg", "expected inertia_kg_m2"]);
+    says(&rig_error(&format!("{LINEAR}[contact]\nsurface_m = 0\nstiffness_n_m = -3\ndamping_n_s_m = 1\n")), &["rig.toml:6", "found -3"]);
+    says(&rig_error(&format!("{LINEAR}[contact]\nmodel = \"hertz\"\n")), &["rig.toml:5: [contact] model", "\"hertz\"", "kelvin_voigt"]);
+    says(&rig_error(&format!("{LINEAR}[contacts]\nsurface_m = 0\n")), &["rig.toml:4: contacts", "contact perhaps"]);
+    says(&rig_error(&format!("{LINEAR}[columns]\nforce = 3\n")), &["[columns] force: found 3", "text in quotes"]);
+    says(&rig_error(&format!("drive = 3\n{LINEAR}")), &["rig.toml:1: drive: found 3", "a table [drive]"]);
+    says(&rig_error("[rig]\nname = \"a\"\ncoordinate = \"polar\"\n"), &["rig.toml:3", "\"polar\"", "\"rotary\""]);
+    says(&rig_error("name = \"a\"\n"), &["[rig]"]);
+    says(&rig_error(&format!("{LINEAR}[drive\n")), &["rig.toml:4", "TOML"]);
+    says(&rig_error(&format!("{LINEAR}[[effect]]\nforce_n = 1\n")), &["rig.toml:4: [[effect]] name: found nothing"]);
+    says(&rig_error(&format!("{LINEAR}[[effect]]\nname = \"x\"\na = [1.0, nan]\n")), &["[[effect]] a"]);
+    let gone = Rig::read(Path::new("no/such.toml")).unwrap_err().to_string();
+    says(&gone, &["no/such.toml: found no such file"]);
+}
+
+#[test]
+fn columns_come_in_any_order_with_extras_a_mark_and_foreign_line_ends() {
+    let text = "\u{feff}note,force_N,position_m,t_s,velocity_m_s\r\n\"a, \"\"b\"\"\",1,-2e-3,0,5\r\n,2.5, 1 ,0.5,6\r\n";
+    let recording = read(text, LINEAR).unwrap();
+    assert_eq!((recording.name.as_str(), &recording.time), ("trial.csv", &vec![0.0, 0.5]));
+    assert_eq!((recording.position, recording.force), (vec![-2e-3, 1.0], Some(vec![1.0, 2.5])));
+    assert_eq!((recording.velocity, recording.effort), (Some(vec![5.0, 6.0]), None));
+    let rotary = format!("{ROTARY}[columns]\neffort = \"torque_Nm\"\n");
+    let recording = read("t_s,position_rad,torque_Nm\n0,1,2\n1,3,4\n", &rotary).unwrap();
+    assert_eq!((recording.effort, recording.force), (Some(vec![2.0, 4.0]), None), "a motor's torque is no contact force");
+}
+
+#[test]
+fn a_recording_at_fault_is_told_by_its_true_line() {
+    refuses("", &["trial.csv: found an empty file"]);
+    refuses("t_s,position_m,force_N\n", &["a header and no rows"]);
+    refuses("t_s,position_m,force_N\n0,1,2\n", &["single row", "at least two"]);
+    refuses("t_s,position_m,force_n\n0,1,2\n1,1,2\n", &["trial.csv:1", "only the columns t_s, position_m, force_n", "force_N"]);
+    refuses("time_s,position_m,force_N\n0,1,2\n", &["column t_s", "position_m, force_N"]);
+    refuses("t_s,positon_m,force_N\n0,1,2\n", &["column position_m", "perhaps positon_m"]);
+    refuses("t_s;position_m;force_N\n0;1;2\n", &["semicolons"]);
+    refuses("t_s,t_s,position_m,force_N\n0,0,1,2\n", &["twice, as columns 1 and 2"]);
+    refuses("t_s,position_m,force_N\r\n0,1,2\r\n\r\n1,x,2\r\n", &["trial.csv:4: column position_m", "the text \"x\""]);
+    refuses("t_s,position_m,force_N\n0,1,2\n1,1,NaN\n", &["trial.csv:3: column force_N", "\"NaN\"", "finite"]);
+    refuses("t_s,position_m,force_N\n0,1,2\n1,1e999,2\n", &["trial.csv:3", "finite"]);
+    refuses("t_s,position_m,force_N\n0,1,2\n1,,2\n", &["an empty field"]);
+    refuses("t_s,position_m,force_N\n0,1,2\n1,1\n", &["trial.csv:3", "2 fields", "expected 3"]);
+    refuses("t_s,position_m,force_N,note\n0,1,2,\"a\nb\"\n1,1,2,c\n1,1,2,d\n", &["trial.csv:5: column t_s", "1 after 1", "increases"]);
+    refuses("t_s,position_rad,torque_Nm\n0,1,2\n1,1,2\n", &["position_rad, a column of a rotary rig", "expected position_m"]);
+    refuses("t_s,position_m,torque_Nm\n0,1,2\n1,1,2\n", &["torque_Nm", "force_N"]);
+    refuses(b"t_s,position_m,force_N\n0,1,2\n1,\xff,2\n", &["trial.csv:3", "UTF-8"]);
+    let named = format!("{LINEAR}[columns]\nforce = \"f_meas\"\n");
+    says(&read("t_s,position_m,f_mes\n0,1,2\n1,1,2\n", &named).unwrap_err(), &["column f_meas", "perhaps f_mes"]);
+    says(&Recording::read(Path::new("no/such.csv"), &rig(LINEAR)).unwrap_err().to_string(), &["no/such.csv: found no such file"]);
+    says(&Recording::read(Path::new("."), &rig(LINEAR)).unwrap_err().to_string(), &["folder"]);
+}
+
+#[test]
+fn a_recording_survives_writing_to_the_bit() {
+    let recording = Recording {
+        name: "again.csv".to_owned(),
+        time: vec![-0.1, 0.1 + 0.2, 1e9],
+        position: vec![1e-300, -f64::MIN_POSITIVE, 0.0],
+        force: Some(vec![1.0 / 3.0, 123_456_789.123, -1e22]),
+        ..Recording::default()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("again.csv");
+    recording.write(&path, Coordinate::Rotary).unwrap();
+    assert_eq!(Recording::read(&path, &rig(ROTARY)).unwrap(), recording);
+    let error = recording.write(folder.path(), Coordinate::Linear).unwrap_err().to_string();
+    says(&error, &["a folder"]);
+}
+
+fn normal(count: usize, seed: u64) -> Vec<f64> {
+    let mut chance = ChaCha8Rng::seed_from_u64(seed);
+    (0..count).map(|_| StandardNormal.sample(&mut chance)).collect()
+}
+
+fn clock(count: usize, rate: f64) -> Vec<f64> {
+    (0..count).map(|row| row as f64 / rate).collect()
+}
+
+/// Scales from nanonewtons at 50 kHz to ten kilonewtons at 10 Hz.
+const SCALES: [(f64, f64); 4] = [(1e-9, 5e4), (1.0, 1e3), (1e-6, 10.0), (1e4, 10.0)];
+
+fn near(found: f64, expected: f64, relative: f64, what: &str) {
+    let error = (found / expected - 1.0).abs();
+    assert!(error <= relative, "{what}: {found:e} against {expected:e}, {:.1} % off", 100.0 * error);
+}
+
+#[test]
+fn noise_is_measured_beneath_motion_onsets_and_spikes_at_any_scale() {
+    let count = 4000;
+    for (force, rate) in SCALES {
+        let time = clock(count, rate);
+        let noise = normal(count, 3);
+        let mut values: Vec<f64> = (0..count)
+            .map(|row| {
+                let phase = row as f64 / count as f64;
+                // Forty cycles, then an onset at half time: a hundred and a thousand times the noise.
+                let slow = 100.0 * (40.0 * std::f64::consts::TAU * phase).sin();
+                force * (noise[row] + slow + if row > count / 2 { 1000.0 } else { 0.0 })
+            })
+            .collect();
+        for row in (0..count).step_by(500) {
+            values[row] += 1e4 * force;
+        }
+        // 4000 samples through a filter that leaves about a third of them independent: 2 %; the median of blocks adds as much.
+        near(white_noise(&time, &values), force, 0.06, "noise");
+    }
+}
+
+#[test]
+fn noise_does_not_mind_an_uneven_clock() {
+    let count = 4000;
+    let jitter = normal(count, 5);
+    let time: Vec<f64> = (0..count).map(|row| row as f64 + 0.1 * jitter[row].tanh()).collect();
+    let noise = normal(count, 6);
+    let values: Vec<f64> = (0..count).map(|row| 50.0 * time[row] + noise[row]).collect();
+    near(white_noise(&time, &values), 1.0, 0.06, "noise under a ramp of fifty a sample");
+}
+
+#[test]
+fn a_step_is_found_at_any_scale_and_none_where_there_is_none() {
+    let noise = normal(3000, 9);
+    for (force, _) in SCALES {
+        for step in [0.05, 0.37, 1.0, 0.1 / 3.0] {
+            let rounded: Vec<f64> = noise.iter().map(|value| (value / step).round() * (step * force)).collect();
+            near(quantum(&rounded), step * force, 1e-9, "step");
+        }
+        let smooth: Vec<f64> = noise.iter().map(|value| value * force).collect();
+        assert_eq!(quantum(&smooth), 0.0, "continuous noise");
+    }
+    let sine: Vec<f64> = (0..3000).map(|row| (f64::from(row) * 0.0123).sin()).collect();
+    assert_eq!(quantum(&sine), 0.0, "continuous motion");
+    assert_eq!(quantum(&[2.0; 50]), 0.0, "a stuck reading has no step");
+    assert_eq!(quantum(&[]), 0.0);
+}
+
+#[test]
+fn decimal_text_does_not_hide_the_count_behind_its_last_digit() {
+    // A 14-bit count of 0.24414 mm, printed to the micrometre, far from zero.
+    let count = 4.0 / 16384.0;
+    let text = |value: f64| format!("{value:.6}").parse::<f64>().unwrap();
+    let values: Vec<f64> = normal(3000, 4).iter().map(|value| text(1.0 + (20.0 * value).round() * count)).collect();
+    near(quantum(&values), count, 1e-4, "count");
+    // A wide-ranging counter, seldom on neighbouring counts, read 2000 times.
+    let values: Vec<f64> = normal(2000, 8).iter().map(|value| (3e4 * value).round() * 1e-3).collect();
+    near(quantum(&values), 1e-3, 1e-9, "sparse counts");
+}
+
+#[test]
+fn a_rounded_noise_is_the_noise_and_its_rounding_and_never_less_than_rounding() {
+    let count = 8000;
+    let time = clock(count, 1e3);
+    let noise = normal(count, 2);
+    for (spread, tolerance) in [(2.0, 0.06), (0.5, 0.08)] {
+        let values: Vec<f64> = noise.iter().map(|value| (spread * value).round()).collect();
+        let expected = f64::hypot(spread, 1.0 / 12f64.sqrt());
+        near(white_noise(&time, &values), expected, tolerance, "noise and rounding");
+    }
+    let recording = Recording {
+        time: time.clone(),
+        position: (0..count).map(|row| (row as f64 * 0.01).floor()).collect(),
+        force: Some((0..count).map(|row| (row as f64 * 0.003).round() * 0.5).collect()),
+        ..Recording::default()
+    };
+    let figures = Figures::of(&rig(LINEAR), &recording);
+    let force = figures.force.unwrap();
+    near(force.resolution, 0.5, 1e-9, "step of a staircase");
+    near(force.noise, 0.5 / 12f64.sqrt(), 1e-9, "floor of a staircase");
+    let given = Figures::of(&rig(&format!("{LINEAR}[sensors]\nforce_resolution_n = 0.0\nforce_noise_n = 3.0\n")), &recording);
+    assert_eq!((given.force.unwrap().resolution, given.force.unwrap().noise), (0.0, 3.0));
+}
+
+fn recordings() -> Option<PathBuf> {
+    let usual = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
+    let folder = std::env::var_os("PALPATE_RECORDINGS").map_or(usual, PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("LEFT OUT: no real recordings at {} (PALPATE_RECORDINGS points elsewhere)", folder.display());
+    None
+}
+
+#[test]
+fn real_recordings_are_read_and_their_sensors_are_plausible() {
+    let Some(folder) = recordings() else { return };
+    let sets = ["afm_soft_contact", "dfki_pendulum", "keyswitch_press", "nanoindentation", "pneumatic_seal_friction", "tissue_indentation"];
+    for set in sets {
+        let rotary = format!("{ROTARY}[columns]\neffort = \"torque_Nm\"\n");
+        let rig = rig(if set == "dfki_pendulum" { &rotary } else { LINEAR });
+        let mut paths: Vec<_> = std::fs::read_dir(folder.join(set)).unwrap().map(|entry| entry.unwrap().path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|ending| ending == "csv"));
+        paths.sort();
+        assert!(!paths.is_empty(), "{set}");
+        for path in paths {
+            let recording = Recording::read(&path, &rig).unwrap();
+            let figures = Figures::of(&rig, &recording);
+            let (values, channel) = match (&recording.force, figures.force) {
+                (Some(force), Some(channel)) => (force, channel),
+                _ => (recording.effort.as_ref().unwrap(), figures.effort.unwrap()),
+            };
+            let most = values.iter().copied().fold(f64::MIN, f64::max);
+            let span = most - values.iter().copied().fold(f64::MAX, f64::min);
+            println!(
+                "{:36} {:9.1} Hz  x step {:9.2e} noise {:9.2e}  F step {:9.2e} noise {:9.2e} span {span:9.2e}",
+                recording.name, recording.rate(), figures.position.resolution, figures.position.noise, channel.resolution, channel.noise
+            );
+            assert!(channel.noise >= channel.resolution / 12f64.sqrt() && channel.noise > 0.0);
+            // The spikiest, a motor's torque under a stiff controller, scatters by a tenth of its span.
+            assert!(channel.noise < 0.15 * span, "{}", recording.name);
+        }
+    }
+}
