@@ -107,6 +107,11 @@ fn beside(path: &Path) -> io::Result<NamedTempFile> {
 
 fn unwritable(path: &Path, error: &io::Error) -> InputError {
     // The library appends the temporary file's own name, which tells a user nothing.
-    let reason = error.get_ref().and_then(|inner| inner.source()).map_or_else(|| error.to_string(), ToString::to_string);
-    InputError::new(path.display(), format!("it cannot be written: {reason}"), "a file in a folder that exists and may be written")
+    let reason =
+        error.get_ref().and_then(|inner| inner.source()).map_or_else(|| error.to_string(), ToString::to_string);
+    InputError::new(
+        path.display(),
+        format!("it cannot be written: {reason}"),
+        "a file in a folder that exists and may be written",
+    )
 }

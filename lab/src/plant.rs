@@ -119,7 +119,11 @@ impl Plant {
             if middle <= before || middle >= after {
                 break;
             }
-            if self.holds(self.frozen(state, effort, middle, touching), touching) { before = middle } else { after = middle }
+            if self.holds(self.frozen(state, effort, middle, touching), touching) {
+                before = middle
+            } else {
+                after = middle
+            }
         }
         after
     }
@@ -130,7 +134,8 @@ impl Plant {
             let force = if touching { self.contact.map_or(0.0, |contact| contact.bearing(at)) } else { 0.0 };
             (at.velocity, (effort - force - self.drive.viscous * at.velocity) / self.drive.inertia)
         };
-        let go = |(v, a): (f64, f64), t: f64| State { position: state.position + t * v, velocity: state.velocity + t * a };
+        let go =
+            |(v, a): (f64, f64), t: f64| State { position: state.position + t * v, velocity: state.velocity + t * a };
         let one = rate(state);
         let two = rate(go(one, 0.5 * span));
         let three = rate(go(two, 0.5 * span));

@@ -92,17 +92,32 @@ name = "backlash"
 #[test]
 fn a_rig_at_fault_is_told_by_line_key_finding_and_expectation() {
     let drive = |lines: &str| format!("{LINEAR}[drive]\n{lines}\n");
-    says(&rig_error(&drive("mass_kg = 1\nviscous_n_s_m = 1\nmas_kg = 2")), &["rig.toml:7: [drive] mas_kg", "unknown", "mass_kg perhaps"]);
-    says(&rig_error(&drive("mass_kg = 0.0\nviscous_n_s_m = 1")), &["rig.toml:5: [drive] mass_kg: found 0.0", "above zero"]);
+    says(
+        &rig_error(&drive("mass_kg = 1\nviscous_n_s_m = 1\nmas_kg = 2")),
+        &["rig.toml:7: [drive] mas_kg", "unknown", "mass_kg perhaps"],
+    );
+    says(
+        &rig_error(&drive("mass_kg = 0.0\nviscous_n_s_m = 1")),
+        &["rig.toml:5: [drive] mass_kg: found 0.0", "above zero"],
+    );
     says(&rig_error(&drive("mass_kg = -1\nviscous_n_s_m = 1")), &["found -1"]);
     says(&rig_error(&drive("mass_kg = nan\nviscous_n_s_m = 1")), &["found nan"]);
     says(&rig_error(&drive("mass_kg = 1\nviscous_n_s_m = inf")), &["rig.toml:6", "found inf"]);
     says(&rig_error(&drive("mass_kg = \"1\"\nviscous_n_s_m = 1")), &["the text \"1\"", "a number above zero"]);
     says(&rig_error(&drive("viscous_n_s_m = 1")), &["rig.toml:4: [drive] mass_kg: found nothing"]);
-    says(&rig_error(&drive("inertia_kg_m2 = 1\nviscous_n_s_m = 1")), &["rig.toml:5: [drive] inertia_kg_m2", "rotary", "expected mass_kg"]);
+    says(
+        &rig_error(&drive("inertia_kg_m2 = 1\nviscous_n_s_m = 1")),
+        &["rig.toml:5: [drive] inertia_kg_m2", "rotary", "expected mass_kg"],
+    );
     says(&rig_error(&format!("{ROTARY}[drive]\nmass_kg = 1\n")), &["mass_kg", "expected inertia_kg_m2"]);
-    says(&rig_error(&format!("{LINEAR}[contact]\nsurface_m = 0\nstiffness_n_m = -3\ndamping_n_s_m = 1\n")), &["rig.toml:6", "found -3"]);
-    says(&rig_error(&format!("{LINEAR}[contact]\nmodel = \"hertz\"\n")), &["rig.toml:5: [contact] model", "\"hertz\"", "kelvin_voigt"]);
+    says(
+        &rig_error(&format!("{LINEAR}[contact]\nsurface_m = 0\nstiffness_n_m = -3\ndamping_n_s_m = 1\n")),
+        &["rig.toml:6", "found -3"],
+    );
+    says(
+        &rig_error(&format!("{LINEAR}[contact]\nmodel = \"hertz\"\n")),
+        &["rig.toml:5: [contact] model", "\"hertz\"", "kelvin_voigt"],
+    );
     says(&rig_error(&format!("{LINEAR}[contacts]\nsurface_m = 0\n")), &["rig.toml:4: contacts", "contact perhaps"]);
     says(&rig_error(&format!("{LINEAR}[columns]\nforce = 3\n")), &["[columns] force: found 3", "text in quotes"]);
     says(&rig_error(&format!("drive = 3\n{LINEAR}")), &["rig.toml:1: drive: found 3", "a table [drive]"]);
@@ -124,7 +139,14 @@ fn columns_come_in_any_order_with_extras_a_mark_and_foreign_line_ends() {
     assert_eq!((recording.velocity, recording.effort), (Some(vec![5.0, 6.0]), None));
     let rotary = format!("{ROTARY}[columns]\neffort = \"torque_Nm\"\n");
     let recording = read("t_s,position_rad,torque_Nm\n0,1,2\n1,3,4\n", &rotary).unwrap();
-    assert_eq!((recording.effort, recording.force), (Some(vec![2.0, 4.0]), None), "a motor's torque is no contact force");
+    assert_eq!(
+        (recording.effort, recording.force),
+        (Some(vec![2.0, 4.0]), None),
+        "a motor's torque is no contact force"
+    );
+    let borrowed = format!("{LINEAR}[columns]\neffort = \"torque_Nm\"\n");
+    let recording = read("t_s,position_m,torque_Nm\n0,1,2\n1,3,4\n", &borrowed).unwrap();
+    assert_eq!(recording.effort, Some(vec![2.0, 4.0]), "what the rig file names is taken at its word");
 }
 
 #[test]
@@ -132,7 +154,10 @@ fn a_recording_at_fault_is_told_by_its_true_line() {
     refuses("", &["trial.csv: found an empty file"]);
     refuses("t_s,position_m,force_N\n", &["a header and no rows"]);
     refuses("t_s,position_m,force_N\n0,1,2\n", &["single row", "at least two"]);
-    refuses("t_s,position_m,force_n\n0,1,2\n1,1,2\n", &["trial.csv:1", "only the columns t_s, position_m, force_n", "force_N"]);
+    refuses(
+        "t_s,position_m,force_n\n0,1,2\n1,1,2\n",
+        &["trial.csv:1", "only the columns t_s, position_m, force_n", "force_N"],
+    );
     refuses("time_s,position_m,force_N\n0,1,2\n", &["column t_s", "position_m, force_N"]);
     refuses("t_s,positon_m,force_N\n0,1,2\n", &["column position_m", "perhaps positon_m"]);
     refuses("t_s;position_m;force_N\n0;1;2\n", &["semicolons"]);
@@ -142,13 +167,22 @@ fn a_recording_at_fault_is_told_by_its_true_line() {
     refuses("t_s,position_m,force_N\n0,1,2\n1,1e999,2\n", &["trial.csv:3", "finite"]);
     refuses("t_s,position_m,force_N\n0,1,2\n1,,2\n", &["an empty field"]);
     refuses("t_s,position_m,force_N\n0,1,2\n1,1\n", &["trial.csv:3", "2 fields", "expected 3"]);
-    refuses("t_s,position_m,force_N,note\n0,1,2,\"a\nb\"\n1,1,2,c\n1,1,2,d\n", &["trial.csv:5: column t_s", "1 after 1", "increases"]);
-    refuses("t_s,position_rad,torque_Nm\n0,1,2\n1,1,2\n", &["position_rad, a column of a rotary rig", "expected position_m"]);
+    refuses(
+        "t_s,position_m,force_N,note\n0,1,2,\"a\nb\"\n1,1,2,c\n1,1,2,d\n",
+        &["trial.csv:5: column t_s", "1 after 1", "increases"],
+    );
+    refuses(
+        "t_s,position_rad,torque_Nm\n0,1,2\n1,1,2\n",
+        &["position_rad, a column of a rotary rig", "expected position_m"],
+    );
     refuses("t_s,position_m,torque_Nm\n0,1,2\n1,1,2\n", &["torque_Nm", "force_N"]);
     refuses(b"t_s,position_m,force_N\n0,1,2\n1,\xff,2\n", &["trial.csv:3", "UTF-8"]);
     let named = format!("{LINEAR}[columns]\nforce = \"f_meas\"\n");
     says(&read("t_s,position_m,f_mes\n0,1,2\n1,1,2\n", &named).unwrap_err(), &["column f_meas", "perhaps f_mes"]);
-    says(&Recording::read(Path::new("no/such.csv"), &rig(LINEAR)).unwrap_err().to_string(), &["no/such.csv: found no such file"]);
+    says(
+        &Recording::read(Path::new("no/such.csv"), &rig(LINEAR)).unwrap_err().to_string(),
+        &["no/such.csv: found no such file"],
+    );
     says(&Recording::read(Path::new("."), &rig(LINEAR)).unwrap_err().to_string(), &["folder"]);
 }
 
@@ -166,7 +200,7 @@ fn a_recording_survives_writing_to_the_bit() {
     recording.write(&path, Coordinate::Rotary).unwrap();
     assert_eq!(Recording::read(&path, &rig(ROTARY)).unwrap(), recording);
     let error = recording.write(folder.path(), Coordinate::Linear).unwrap_err().to_string();
-    says(&error, &["a folder"]);
+    says(&error, &["found a folder"]);
 }
 
 fn normal(count: usize, seed: u64) -> Vec<f64> {
@@ -248,6 +282,57 @@ fn decimal_text_does_not_hide_the_count_behind_its_last_digit() {
 }
 
 #[test]
+fn a_steady_ramp_is_not_taken_for_a_coarse_sensor() {
+    // 1 mm/s at 10 Hz, held to a third of a percent and printed to 10 nm: every row is 0.1 mm on, and no sensor counts.
+    let wander = normal(100, 7);
+    let mut at = 0.0;
+    let mut text = |wander: &f64| {
+        at += 1e-4 * (1.0 + 3e-3 * wander);
+        format!("{at:.8}").parse::<f64>().unwrap()
+    };
+    let values: Vec<f64> = wander.iter().map(&mut text).collect();
+    assert!(quantum(&values) <= 1e-8, "{:e}", quantum(&values));
+    // The same with a rest every six rows, so that its steps come in short runs as a slow sensor's would.
+    let resting: Vec<f64> =
+        values.chunks(6).flat_map(|run| run.iter().chain([&run[run.len() - 1]; 2])).copied().collect();
+    assert!(quantum(&resting) <= 1e-8, "{:e}", quantum(&resting));
+    let perfect: Vec<f64> =
+        (0..200).map(|row| f64::from(if row < 100 { row } else { 200 - row }) * 1e-3 / 3.0).collect();
+    assert_eq!(quantum(&perfect), 0.0, "up and down at one speed, in full digits");
+    let rounded: Vec<f64> = (0..200).map(|row| (f64::from(row) * 0.7).round() * 1e-3 / 3.0).collect();
+    near(quantum(&rounded), 1e-3 / 3.0, 1e-9, "a ramp of 0.7 counts a reading");
+}
+
+#[test]
+fn a_million_rows_are_read_in_about_a_second() {
+    let count = 1_000_000;
+    let time = clock(count, 1e3);
+    let wave = |gain: f64| -> Vec<f64> { time.iter().map(|t| gain * (3.7 * t).sin()).collect() };
+    let recording = Recording {
+        position: wave(0.01),
+        force: Some(wave(3.0)),
+        effort: Some(wave(4.0)),
+        time: time.clone(),
+        ..Recording::default()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.csv");
+    recording.write(&path, Coordinate::Linear).unwrap();
+    let start = std::time::Instant::now();
+    let read = Recording::read(&path, &rig(LINEAR)).unwrap();
+    let reading = start.elapsed();
+    let figures = Figures::of(&rig(LINEAR), &read);
+    println!(
+        "{count} rows of four columns: read in {reading:.2?}, sensors estimated in {:.2?}",
+        start.elapsed() - reading
+    );
+    assert_eq!(read.time.len(), count);
+    assert_eq!(figures.force.unwrap().resolution, 0.0);
+    // Ten times what it takes, for a loaded machine; a quadratic line count would take hours.
+    assert!(reading.as_secs_f64() < 10.0, "{reading:?}");
+}
+
+#[test]
 fn a_rounded_noise_is_the_noise_and_its_rounding_and_never_less_than_rounding() {
     let count = 8000;
     let time = clock(count, 1e3);
@@ -267,7 +352,8 @@ fn a_rounded_noise_is_the_noise_and_its_rounding_and_never_less_than_rounding() 
     let force = figures.force.unwrap();
     near(force.resolution, 0.5, 1e-9, "step of a staircase");
     near(force.noise, 0.5 / 12f64.sqrt(), 1e-9, "floor of a staircase");
-    let given = Figures::of(&rig(&format!("{LINEAR}[sensors]\nforce_resolution_n = 0.0\nforce_noise_n = 3.0\n")), &recording);
+    let given =
+        Figures::of(&rig(&format!("{LINEAR}[sensors]\nforce_resolution_n = 0.0\nforce_noise_n = 3.0\n")), &recording);
     assert_eq!((given.force.unwrap().resolution, given.force.unwrap().noise), (0.0, 3.0));
 }
 
@@ -282,13 +368,48 @@ fn recordings() -> Option<PathBuf> {
 }
 
 #[test]
+fn the_rigs_of_real_recordings_touch_where_the_force_rises() {
+    let Some(folder) = recordings() else { return };
+    let pairs = [
+        ("afm_creep_brain", "afm_soft_contact/creep_brain"),
+        ("afm_creep_gel", "afm_soft_contact/creep_polymergel"),
+        ("afm_cell", "afm_soft_contact/fd_cell_2016a"),
+        ("tissue_s230515", "tissue_indentation/s230515_P002_1"),
+        ("tissue_meat", "tissue_indentation/meat_230327_FF1_1A"),
+    ];
+    for (name, trial) in pairs {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("rigs").join(format!("{name}.toml"));
+        let rig = Rig::read(&path).unwrap();
+        let recording = Recording::read(&folder.join(format!("{trial}.csv")), &rig).unwrap();
+        let (contact, zero) = (rig.contact.unwrap(), rig.sensors.force_zero.unwrap());
+        let force = recording.force.unwrap();
+        let peak = (0..force.len()).max_by(|one, two| force[*one].total_cmp(&force[*two])).unwrap();
+        let load = force[peak] - zero;
+        for ((position, force), time) in recording.position.iter().zip(&force).zip(&recording.time).take(peak) {
+            // Before the touch only noise and drift: 2 % of the load. At the peak the line is right to a factor of two.
+            assert!(*position > contact.surface || (force - zero).abs() < 0.02 * load, "{name} at {time} s");
+        }
+        let spring = contact.stiffness * (recording.position[peak] - contact.surface);
+        assert!((0.5..2.0).contains(&(spring / load)), "{name}: {spring:.2e} N against {load:.2e} N");
+    }
+}
+
+#[test]
 fn real_recordings_are_read_and_their_sensors_are_plausible() {
     let Some(folder) = recordings() else { return };
-    let sets = ["afm_soft_contact", "dfki_pendulum", "keyswitch_press", "nanoindentation", "pneumatic_seal_friction", "tissue_indentation"];
+    let sets = [
+        "afm_soft_contact",
+        "dfki_pendulum",
+        "keyswitch_press",
+        "nanoindentation",
+        "pneumatic_seal_friction",
+        "tissue_indentation",
+    ];
     for set in sets {
         let rotary = format!("{ROTARY}[columns]\neffort = \"torque_Nm\"\n");
         let rig = rig(if set == "dfki_pendulum" { &rotary } else { LINEAR });
-        let mut paths: Vec<_> = std::fs::read_dir(folder.join(set)).unwrap().map(|entry| entry.unwrap().path()).collect();
+        let mut paths: Vec<_> =
+            std::fs::read_dir(folder.join(set)).unwrap().map(|entry| entry.unwrap().path()).collect();
         paths.retain(|path| path.extension().is_some_and(|ending| ending == "csv"));
         paths.sort();
         assert!(!paths.is_empty(), "{set}");
@@ -303,7 +424,12 @@ fn real_recordings_are_read_and_their_sensors_are_plausible() {
             let span = most - values.iter().copied().fold(f64::MAX, f64::min);
             println!(
                 "{:36} {:9.1} Hz  x step {:9.2e} noise {:9.2e}  F step {:9.2e} noise {:9.2e} span {span:9.2e}",
-                recording.name, recording.rate(), figures.position.resolution, figures.position.noise, channel.resolution, channel.noise
+                recording.name,
+                recording.rate(),
+                figures.position.resolution,
+                figures.position.noise,
+                channel.resolution,
+                channel.noise
             );
             assert!(channel.noise >= channel.resolution / 12f64.sqrt() && channel.noise > 0.0);
             // The spikiest, a motor's torque under a stiff controller, scatters by a tenth of its span.

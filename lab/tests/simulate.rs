@@ -90,7 +90,10 @@ fn an_impact_and_a_release_leave_the_integration_at_order_four() {
     assert!(coarse / fine > 100.0, "gain {}", coarse / fine);
     let used = plant.steps_for(0.12) as usize;
     let (default, halved) = (bounce(&plant, used), bounce(&plant, 2 * used));
-    println!("steps of the default: {used}, halving moves the end by {:.2e} m", (default.position - halved.position).abs());
+    println!(
+        "steps of the default: {used}, halving moves the end by {:.2e} m",
+        (default.position - halved.position).abs()
+    );
     close(default.position, halved.position, 1e-6 * 0.01, "halving the default step");
 }
 
@@ -154,13 +157,18 @@ fn the_recorded_effort_drives_the_recorded_motion() {
     let (mut worst, mut strongest) = (0.0f64, 0.0f64);
     for i in (160_005..199_995).step_by(10) {
         // In the middle of a hold of ten rows the effort is constant and the motion smooth.
-        let at = i;
-        let velocity = (x[at + 1] - x[at - 1]) / (2.0 * step);
-        let acceleration = (x[at + 1] - 2.0 * x[at] + x[at - 1]) / (step * step);
-        worst = worst.max((0.8 * acceleration + 4.0 * velocity + force[at] - effort[at]).abs());
-        strongest = strongest.max(effort[at].abs());
+        let velocity = (x[i + 1] - x[i - 1]) / (2.0 * step);
+        let acceleration = (x[i + 1] - 2.0 * x[i] + x[i - 1]) / (step * step);
+        worst = worst.max((0.8 * acceleration + 4.0 * velocity + force[i] - effort[i]).abs());
+        strongest = strongest.max(effort[i].abs());
     }
-    // Second differences at 0.1 ms: rounding of 1e-18 / 1e-8, curvature of a 4 Hz loop far below; contact edges excluded by depth.
+    let changes = (1..effort.len()).filter(|&row| effort[row] != effort[row - 1]);
+    assert!(
+        changes.clone().count() > 10_000 && changes.clone().all(|row| row % 10 == 0),
+        "a row shows the effort that begins there"
+    );
+    // Second differences at 0.1 ms: rounding of 1e-18 / 1e-8, curvature of a 4 Hz loop far below; one second after
+    // the onset the tool stays in contact.
     assert!(worst < 1e-3 * strongest && strongest > 1.0, "worst {worst:.2e} N of {strongest:.2} N");
 }
 
@@ -199,6 +207,36 @@ fn without_a_contact_there_is_no_force() {
 }
 
 #[test]
+fn the_drive_gives_no_more_than_its_saturation_and_its_user_is_told() {
+    let text = EXAMPLE.to_owned()
+        + "[control]\nproportional_n_m = 775\nderivative_n_s_m = 10\neffort_saturation_n = 0.5\n[simulation]\nduration_s = 30\n";
+    let trial = trial(&text, 1);
+    let effort = trial.recording.effort.unwrap();
+    let most = effort.iter().fold(0.0f64, |most, effort| most.max(effort.abs()));
+    assert_eq!(most, 0.5);
+    assert!(trial.notices.iter().any(|notice| notice.contains("at its limit")), "{:?}", trial.notices);
+}
+
+#[test]
+fn the_sensor_at_rest_reads_its_zero_in_whole_steps() {
+    let text = EXAMPLE.to_owned() + "force_noise_n = 0.0\nforce_zero_n = -0.27\n[simulation]\nduration_s = 5\n";
+    let force = trial(&text, 1).recording.force.unwrap();
+    // -0.27 lies between -0.25 and -0.30, nearer to the former.
+    assert!(force.iter().all(|force| *force == -0.25), "{:?}", &force[..3]);
+}
+
+#[test]
+fn a_control_clock_that_is_no_multiple_of_the_rows_still_holds_its_effort() {
+    let text = EXAMPLE.to_owned()
+        + "[control]\nproportional_n_m = 775\nderivative_n_s_m = 10\nrate_hz = 300\n[simulation]\nduration_s = 20\nrate_hz = 1000\n";
+    let recording = trial(&text, 1).recording;
+    let effort = recording.effort.unwrap();
+    let changes = effort.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    // 20 s at 300 Hz are 6000 updates; a coarse encoder at rest repeats a few.
+    assert!((5000..=6000).contains(&changes), "{changes} changes of effort");
+}
+
+#[test]
 fn a_tool_that_never_touches_is_told_of() {
     let text = EXAMPLE.to_owned() + "[simulation]\nduration_s = 10.0\n";
     let notices = trial(&text, 1).notices;
@@ -216,7 +254,16 @@ fn a_scale_of_nanonewtons_and_one_of_kilonewtons_obey_the_same_law() {
              [control]\nproportional_n_m = {}\nderivative_n_s_m = {}\n\
              [reference]\nfree_depth_m = {}\ncontact_depth_m = {}\nperiod_s = 2\ncontact_s = 1\nsmoothing_s = 0.05\n\
              sine_amplitude_m = {}\nsine_frequency_hz = 5\n[simulation]\nduration_s = 4\n",
-            0.5 * m, 2.0 * m, 0.1 * l, 300.0 * m, 5.0 * m, 800.0 * m, 10.0 * m, -0.01 * l, 0.01 * l, 0.002 * l
+            0.5 * m,
+            2.0 * m,
+            0.1 * l,
+            300.0 * m,
+            5.0 * m,
+            800.0 * m,
+            10.0 * m,
+            -0.01 * l,
+            0.01 * l,
+            0.002 * l
         );
         trial(&text, 1).recording.force.unwrap()
     };
@@ -239,9 +286,13 @@ fn what_cannot_be_simulated_is_refused_by_name() {
             assert!(error.contains(word), "{error} lacks {word}");
         }
     };
-    says(&format!("{EXAMPLE}[[effect]]\nname = \"coulomb_friction\"\nforce_n = 0.3\n"), &["rig.toml", "coulomb_friction"]);
+    says(
+        &format!("{EXAMPLE}[[effect]]\nname = \"coulomb_friction\"\nforce_n = 0.3\n"),
+        &["rig.toml", "coulomb_friction"],
+    );
     says(&EXAMPLE.replace("stiffness_n_m = 300.0", "stiffness_n_m = 1e15"), &["[control]"]);
-    let stiff = EXAMPLE.replace("mass_kg = 0.8", "mass_kg = 0.02").replace("damping_n_s_m = 5.0", "damping_n_s_m = 1e7");
+    let stiff =
+        EXAMPLE.replace("mass_kg = 0.8", "mass_kg = 0.02").replace("damping_n_s_m = 5.0", "damping_n_s_m = 1e7");
     says(&stiff, &["time constant", "integration steps"]);
     let rotary = "[rig]\nname = \"r\"\ncoordinate = \"rotary\"\n[contact]\nsurface_rad = 0\nstiffness_n_m_rad = 1\n\
                   damping_n_m_s_rad = 0.1\n";
@@ -270,6 +321,8 @@ fn a_model_replaces_the_rig_and_an_unwritable_place_is_named_before_the_run() {
     let nowhere = folder.path().join("absent/out.csv");
     let error = go(None, &nowhere).unwrap_err().to_string();
     assert!(error.contains("absent/out.csv") && error.contains("cannot be written"), "{error}");
+    let error = go(None, &rig).unwrap_err().to_string();
+    assert!(error.contains("an input of this very run"), "{error}");
     let error = go(Some(&folder.path().join("none.toml")), &out).unwrap_err().to_string();
     assert!(error.contains("none.toml: found no such file"), "{error}");
 }
@@ -284,7 +337,12 @@ fn every_example_rig_reads_round_trips_and_runs_into_its_surface() {
         assert_eq!(rig, Rig::parse(&rig.to_toml(), "again").unwrap(), "{}", path.display());
         let trial = simulate(&rig, 1, "rig").unwrap();
         // "note:" says that sensors left to the recording are simulated as ideal; a warning would be a fault of the file.
-        assert!(trial.notices.iter().all(|notice| notice.starts_with("note:")), "{}: {:?}", path.display(), trial.notices);
+        assert!(
+            trial.notices.iter().all(|notice| notice.starts_with("note:")),
+            "{}: {:?}",
+            path.display(),
+            trial.notices
+        );
         assert!(largest(trial.recording.force.as_ref().unwrap()) > 0.0);
         seen += 1;
     }

@@ -197,7 +197,8 @@ impl<'a> Table<'a> {
         match entries.keys().find(|found| found.get_ref() == wrong) {
             None => Ok(()),
             Some(found) => {
-                let what = format!("a key of a {} rig in a {} one", self.coordinate.other().name(), self.coordinate.name());
+                let what =
+                    format!("a key of a {} rig in a {} one", self.coordinate.other().name(), self.coordinate.name());
                 Err(self.error(wrong, found.span().start, what, right))
             }
         }

@@ -6,7 +6,10 @@ use super::{Effect, Rig, words};
 /// See [`Rig::to_toml`].
 pub fn text(rig: &Rig) -> String {
     let mut page = Page { text: String::new(), coordinate: rig.coordinate };
-    page.table("rig", &[(words::NAME, Some(quoted(&rig.name))), (words::COORDINATE, Some(quoted(rig.coordinate.name())))]);
+    page.table(
+        "rig",
+        &[(words::NAME, Some(quoted(&rig.name))), (words::COORDINATE, Some(quoted(rig.coordinate.name())))],
+    );
     columns(&mut page, rig);
     nominal(&mut page, rig);
     trial(&mut page, rig);
@@ -68,7 +71,10 @@ fn trial(page: &mut Page, rig: &Rig) {
                 (words::DERIVATIVE, number(control.derivative)),
                 (words::DERIVATIVE_FILTER, control.derivative_filter_hz.and_then(number)),
                 // An absent key is how the file says "no limit".
-                (words::EFFORT_SATURATION, number(control.effort_saturation).filter(|_| control.effort_saturation.is_finite())),
+                (
+                    words::EFFORT_SATURATION,
+                    number(control.effort_saturation).filter(|_| control.effort_saturation.is_finite()),
+                ),
                 (words::RATE, number(control.rate_hz)),
             ],
         );
@@ -87,7 +93,8 @@ fn trial(page: &mut Page, rig: &Rig) {
             ],
         );
     }
-    let simulation = [(words::DURATION, number(rig.simulation.duration_s)), (words::RATE, number(rig.simulation.rate_hz))];
+    let simulation =
+        [(words::DURATION, number(rig.simulation.duration_s)), (words::RATE, number(rig.simulation.rate_hz))];
     page.table("simulation", &simulation);
 }
 
@@ -120,7 +127,8 @@ impl Page {
 
 fn number(value: f64) -> Option<String> {
     // TOML wants a digit on both sides of a decimal point, and whole numbers would read back as integers.
-    let text = if value == 0.0 || (1e-4..1e9).contains(&value.abs()) { format!("{value:?}") } else { format!("{value:e}") };
+    let text =
+        if value == 0.0 || (1e-4..1e9).contains(&value.abs()) { format!("{value:?}") } else { format!("{value:e}") };
     Some(text)
 }
 

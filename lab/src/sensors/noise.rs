@@ -21,7 +21,8 @@ pub fn white_noise(time: &[f64], values: &[f64]) -> f64 {
         return 0.0;
     }
     let reach = REACH.min(rows);
-    let residuals: Vec<_> = (0..=rows - reach).map(|at| residual(&time[at..at + reach], &values[at..at + reach])).collect();
+    let residuals: Vec<_> =
+        (0..=rows - reach).map(|at| residual(&time[at..at + reach], &values[at..at + reach])).collect();
     let mut votes: Vec<_> = residuals.chunks(BLOCK).map(mean_square).collect();
     // A short remainder votes as loudly as a block: leave it out where there is anything else.
     if residuals.len() % BLOCK != 0 && votes.len() > 1 {

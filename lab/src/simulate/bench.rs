@@ -8,8 +8,13 @@ use crate::rig::{Control, Reference, Rig, Simulation};
 const MOST_ROWS: f64 = 5e7;
 
 /// The paper's controller.
-const CONTROL: Control =
-    Control { proportional: 775.0, derivative: 10.0, derivative_filter_hz: None, effort_saturation: 25.0, rate_hz: 1000.0 };
+const CONTROL: Control = Control {
+    proportional: 775.0,
+    derivative: 10.0,
+    derivative_filter_hz: None,
+    effort_saturation: 25.0,
+    rate_hz: 1000.0,
+};
 
 /// A step of the paper's encoder at the tool, m; of its force sensor, N; and that sensor's noise, N.
 const POSITION_RESOLUTION: f64 = 1e-4;
@@ -49,7 +54,8 @@ pub fn complete(rig: &Rig, origin: &str) -> Result<Setting, InputError> {
         None => reference::BENCH,
     };
     let sensors = rig.sensors;
-    let open = sensors.position_resolution.is_none() || sensors.force_resolution.is_none() || sensors.force_noise.is_none();
+    let open =
+        sensors.position_resolution.is_none() || sensors.force_resolution.is_none() || sensors.force_noise.is_none();
     if !fits && open {
         notices.push(format!("note: {origin}: what [sensors] leaves out is taken as ideal: no steps, no noise"));
     }
@@ -71,7 +77,11 @@ fn refuse_unable(rig: &Rig, origin: &str) -> Result<(), InputError> {
     if !rig.effects.is_empty() {
         let names: Vec<_> = rig.effects.iter().map(|effect| effect.name.as_str()).collect();
         let place = format!("{origin}: [[effect]]");
-        return Err(InputError::new(place, names.join(", "), "no effects: simulate knows the nominal model only, so far"));
+        return Err(InputError::new(
+            place,
+            names.join(", "),
+            "no effects: simulate knows the nominal model only, so far",
+        ));
     }
     if rig.drive.is_none() && rig.contact.is_none() {
         return Err(InputError::new(origin, "neither [drive] nor [contact]", "at least one of them to simulate"));
@@ -79,7 +89,11 @@ fn refuse_unable(rig: &Rig, origin: &str) -> Result<(), InputError> {
     let rows = rig.simulation.duration_s * rig.simulation.rate_hz;
     if !(1.0..=MOST_ROWS).contains(&rows) {
         let place = format!("{origin}: [simulation]");
-        return Err(InputError::new(place, format!("{rows} rows (duration_s times rate_hz)"), format!("1 to {MOST_ROWS}")));
+        return Err(InputError::new(
+            place,
+            format!("{rows} rows (duration_s times rate_hz)"),
+            format!("1 to {MOST_ROWS}"),
+        ));
     }
     Ok(())
 }

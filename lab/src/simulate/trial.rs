@@ -73,12 +73,20 @@ fn mover(setting: &Setting, origin: &str) -> Result<Mover, InputError> {
             "a fastest time constant of {:.1e} s, {steps:.0} integration steps a control period",
             plant.fastest_rate().recip()
         );
-        let expected = format!("at most {MOST_STEPS:.0} of them: a higher rate_hz in [control], or a rig less stiff or damped");
+        let expected =
+            format!("at most {MOST_STEPS:.0} of them: a higher rate_hz in [control], or a rig less stiff or damped");
         return Err(InputError::new(format!("{origin}: [drive] and [contact]"), found, expected));
     }
     let start = setting.rig.surface() + setting.reference.at(0.0).0;
     let state = State { position: start, velocity: 0.0 };
-    Ok(Mover::Driven { plant, controller: Controller::new(setting.control), state, effort: 0.0, time: 0.0, updates: 0.0 })
+    Ok(Mover::Driven {
+        plant,
+        controller: Controller::new(setting.control),
+        state,
+        effort: 0.0,
+        time: 0.0,
+        updates: 0.0,
+    })
 }
 
 /// Longest time that passes without an event.
@@ -88,7 +96,9 @@ fn hold(setting: &Setting) -> f64 {
 
 fn bar(setting: &Setting, mover: &Mover, rows: usize) -> ProgressBar {
     let work = match mover {
-        Mover::Driven { plant, .. } => plant.steps_for(hold(setting)) * setting.control.rate_hz * setting.simulation.duration_s,
+        Mover::Driven { plant, .. } => {
+            plant.steps_for(hold(setting)) * setting.control.rate_hz * setting.simulation.duration_s
+        }
         Mover::Led => rows as f64,
     };
     if work > LONG && std::io::stderr().is_terminal() {
@@ -174,7 +184,8 @@ impl<'a> Run<'a> {
         if self.setting.rig.contact.is_some() && !self.touched {
             let depth = self.setting.reference.contact_depth;
             let unit = self.setting.rig.coordinate.position_unit();
-            let hint = format!("check contact_depth ({depth} {unit}), contact_s, duration_s and the controller's gains");
+            let hint =
+                format!("check contact_depth ({depth} {unit}), contact_s, duration_s and the controller's gains");
             notices.push(format!("warning: {origin}: the tool never touches the surface; {hint}"));
         }
         let share = self.limited as f64 / self.recording.time.len() as f64;
