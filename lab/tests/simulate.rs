@@ -299,6 +299,18 @@ fn what_cannot_be_simulated_is_refused_by_name() {
     says(rotary, &["[reference]", "nothing", "do not fit this rig"]);
     says("[rig]\nname = \"r\"\ncoordinate = \"linear\"\n", &["[drive]", "[contact]"]);
     says(&format!("{EXAMPLE}[simulation]\nduration_s = 1e9\n"), &["[simulation]", "rows"]);
+    let clock = format!("{EXAMPLE}[control]\nproportional_n_m = 1\nderivative_n_s_m = 1\nrate_hz = 1e12\n");
+    says(&clock, &["integration steps in all", "rate_hz"]);
+}
+
+#[test]
+fn the_command_line_is_sound() {
+    use clap::{Args, Command, FromArgMatches};
+    let command = SimulateArgs::augment_args(Command::new("simulate"));
+    command.clone().debug_assert();
+    let found = command.try_get_matches_from(["simulate", "--rig", "r.toml", "--seed", "9", "--out", "t.csv"]).unwrap();
+    let args = SimulateArgs::from_arg_matches(&found).unwrap();
+    assert_eq!((args.rig, args.model, args.seed, args.out), ("r.toml".into(), None, 9, "t.csv".into()));
 }
 
 #[test]
