@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::error::InputError;
 use crate::outfile::OutFile;
-use crate::rig::{Coordinate, Rig};
+use crate::rig::Rig;
 use columns::Role;
 
 /// A trial. All columns are of equal length, at least two rows, every number finite, time strictly increasing.
@@ -42,24 +42,29 @@ impl Recording {
         read::recording(path, rig)
     }
 
-    /// Writes the recording under the default names of `coordinate`, whole or not at all.
+    /// Writes the recording under the column names of `rig`, so that the same rig reads it; whole or not at all.
     ///
     /// Numbers are written so that they read back to the bit.
     ///
     /// # Errors
     /// The place cannot be written.
-    pub fn write(&self, path: &Path, coordinate: Coordinate) -> Result<(), InputError> {
-        self.write_to(OutFile::create(path)?, coordinate)
+    pub fn write(&self, path: &Path, rig: &Rig) -> Result<(), InputError> {
+        self.write_to(OutFile::create(path)?, rig)
     }
 
     /// As [`Recording::write`], into a file opened before.
     ///
     /// # Errors
     /// The place cannot be written any more.
-    pub fn write_to(&self, mut file: OutFile, coordinate: Coordinate) -> Result<(), InputError> {
+    pub fn write_to(&self, mut file: OutFile, rig: &Rig) -> Result<(), InputError> {
         let channels = self.channels();
-        let names: Vec<_> = channels.iter().map(|(role, _)| coordinate.pick(role.default_name())).collect();
-        let mut text = names.join(",") + "\n";
+        // A name of the rig file may hold a comma, which the CSV writer puts in quotes.
+        let mut header = csv::Writer::from_writer(&mut file);
+        let written = header.write_record(channels.iter().map(|(role, _)| role.name(rig)));
+        let written = written.map_err(std::io::Error::from).and_then(|()| header.flush());
+        drop(header);
+        written.map_err(|error| file.fault(&error))?;
+        let mut text = String::new();
         for row in 0..self.time.len() {
             for (at, (_, values)) in channels.iter().enumerate() {
                 if at > 0 {

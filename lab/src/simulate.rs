@@ -56,13 +56,24 @@ pub fn run(args: SimulateArgs) -> anyhow::Result<()> {
         }
         (rig, origin) = (model, path);
     }
+    refuse_own_input(&args)?;
     let file = OutFile::create(&args.out)?;
     let trial = simulate(&rig, args.seed, &origin.display().to_string())?;
     for notice in &trial.notices {
         eprintln!("{notice}");
     }
-    trial.recording.write_to(file, rig.coordinate)?;
+    trial.recording.write_to(file, &rig)?;
     Ok(())
+}
+
+/// A slip on the command line must not cost a user the rig file.
+fn refuse_own_input(args: &SimulateArgs) -> Result<(), InputError> {
+    let Ok(out) = std::fs::canonicalize(&args.out) else { return Ok(()) };
+    let mut inputs = std::iter::once(&args.rig).chain(&args.model);
+    match inputs.find(|input| std::fs::canonicalize(input).is_ok_and(|input| input == out)) {
+        Some(_) => Err(InputError::new(args.out.display(), "an input of this very run", "another file to write to")),
+        None => Ok(()),
+    }
 }
 
 /// Simulates `rig`; `origin` names its file in errors.

@@ -266,3 +266,15 @@ fn what_is_simulated_is_replayed_to_the_rigs_own_figures() {
     assert!(known.len() > 20_000, "{} of 30 000 samples in contact are known to 5 N/m", known.len());
     assert!(covered as f64 > 0.9 * known.len() as f64, "{covered} of {} intervals of 95 % hold 300 N/m", known.len());
 }
+
+#[test]
+fn a_simulated_trial_has_the_column_names_of_its_rig() {
+    let folder = TempDir::new().expect("a folder");
+    let (rig, trial) = (folder.path().join("rig.toml"), folder.path().join("trial.csv"));
+    let bench = fs::read_to_string(bench_rig()).expect("a rig");
+    fs::write(&rig, bench + "\n[columns]\nforce = \"load, measured\"\n").expect("a file");
+    palpate().args(["simulate", "--rig"]).arg(&rig).arg("--out").arg(&trial).assert().success();
+    let header = fs::read_to_string(&trial).expect("a trial");
+    assert!(header.starts_with("t_s,position_m,\"load, measured\",effort_N,"), "{:?}", header.lines().next());
+    palpate().args(["replay", "--rig"]).arg(&rig).arg(&trial).assert().success();
+}

@@ -29,6 +29,11 @@ impl Role {
         }
     }
 
+    /// The column's name in a recording of `rig`.
+    pub fn name(self, rig: &Rig) -> &str {
+        self.given(&rig.columns).unwrap_or(rig.coordinate.pick(self.default_name()))
+    }
+
     fn given(self, columns: &Columns) -> Option<&str> {
         match self {
             Self::Time => &columns.time,
@@ -65,7 +70,7 @@ pub fn find(header: &[&str], rig: &Rig, place: &str) -> Result<Vec<Found>, Input
 fn column(role: Role, header: &[&str], rig: &Rig, place: &str) -> Result<Option<usize>, InputError> {
     let given = role.given(&rig.columns);
     let word = role.default_name();
-    let name = given.unwrap_or(rig.coordinate.pick(word));
+    let name = role.name(rig);
     // A column that the rig file gives to one role is not also taken for another by its default name.
     let taken = |name: &str| Role::ALL.iter().any(|other| *other != role && other.given(&rig.columns) == Some(name));
     let mut columns = (0..header.len()).filter(|&at| header[at] == name && (given.is_some() || !taken(name)));

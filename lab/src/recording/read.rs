@@ -21,14 +21,10 @@ pub fn recording(path: &Path, rig: &Rig) -> Result<Recording, InputError> {
         InputError::new(&place, found, "a recording that can be read")
     })?;
     let name = path.file_name().map_or_else(|| place.clone(), |name| name.to_string_lossy().into_owned());
-    File { place, bytes: without_mark(&bytes) }.parse(name, rig)
+    File { place, bytes: &bytes }.parse(name, rig)
 }
 
-fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
-}
-
-/// The bytes of a file after its byte order mark.
+/// A file in memory. The CSV reader skips a byte order mark by itself.
 struct File<'a> {
     place: String,
     bytes: &'a [u8],

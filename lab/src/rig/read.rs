@@ -46,10 +46,9 @@ fn head(root: &Table<'_>) -> Result<(String, Coordinate), InputError> {
     let name = table.text(words::NAME)?.ok_or_else(|| table.missing(words::NAME, "a text in quotes"))?;
     let choice = "\"linear\" or \"rotary\"";
     let coordinate = match table.text(words::COORDINATE)?.as_deref() {
-        Some("linear") => Coordinate::Linear,
+        None | Some("linear") => Coordinate::Linear,
         Some("rotary") => Coordinate::Rotary,
         Some(other) => return Err(table.at(words::COORDINATE, format!("\"{other}\""), choice)),
-        None => return Err(table.missing(words::COORDINATE, choice)),
     };
     table.done()?;
     Ok((name, coordinate))

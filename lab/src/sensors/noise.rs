@@ -6,6 +6,11 @@ const REACH: usize = 7;
 /// Residuals whose mean square makes one vote.
 const BLOCK: usize = 32;
 
+/// Median over mean of the mean square of such a block. Neighbouring residuals share samples: 32 of them are worth 10.4
+/// independent ones (the squares of their autocorrelations C(12, 6+j)/C(12, 6) add to 3.17), and the median of a
+/// chi-square of k degrees is (1 - 2/(9 k))^3 of its mean.
+const MEDIAN: f64 = 0.937;
+
 /// Standard deviation of the white noise of `values` sampled at `time`; 0 for fewer than three values.
 ///
 /// Each run of seven samples gives one residual, the divided difference of order six scaled to the noise: it is blind to
@@ -30,7 +35,8 @@ pub fn white_noise(time: &[f64], values: &[f64]) -> f64 {
     }
     let middle = votes.len() / 2;
     let median = *votes.select_nth_unstable_by(middle, f64::total_cmp).1;
-    median.sqrt()
+    // One or two votes have no median to speak of.
+    if votes.len() > 2 { (median / MEDIAN).sqrt() } else { median.sqrt() }
 }
 
 fn mean_square(block: &[f64]) -> f64 {

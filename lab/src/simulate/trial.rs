@@ -17,6 +17,9 @@ use crate::recording::Recording;
 /// Integration steps from which a run takes long enough to be watched.
 const LONG: f64 = 1e8;
 
+/// Integration steps that nobody waits for: about an hour.
+const MOST_WORK: f64 = 1e11;
+
 /// Share of rows at the effort's limit from which a user should know.
 const OFTEN: f64 = 0.2;
 
@@ -67,7 +70,7 @@ pub fn run(setting: &Setting, seed: u64, origin: &str) -> Result<Trial, InputErr
 fn mover(setting: &Setting, origin: &str) -> Result<Mover, InputError> {
     let Some(drive) = setting.rig.drive else { return Ok(Mover::Led) };
     let plant = Plant { drive, contact: setting.rig.contact };
-    let steps = plant.steps_for(hold(setting));
+    let steps = plant.steps_for(setting.control.rate_hz.max(setting.simulation.rate_hz).recip());
     if steps > MOST_STEPS {
         let found = format!(
             "a fastest time constant of {:.1e} s, {steps:.0} integration steps a control period",
@@ -76,6 +79,12 @@ fn mover(setting: &Setting, origin: &str) -> Result<Mover, InputError> {
         let expected =
             format!("at most {MOST_STEPS:.0} of them: a higher rate_hz in [control], or a rig less stiff or damped");
         return Err(InputError::new(format!("{origin}: [drive] and [contact]"), found, expected));
+    }
+    let work = work(setting, &plant);
+    if work > MOST_WORK {
+        let found = format!("{work:.1e} integration steps in all");
+        let expected = format!("at most {MOST_WORK:.0e}: a shorter duration_s or lower rate_hz");
+        return Err(InputError::new(format!("{origin}: [simulation] and [control]"), found, expected));
     }
     let start = setting.rig.surface() + setting.reference.at(0.0).0;
     let state = State { position: start, velocity: 0.0 };
@@ -89,16 +98,15 @@ fn mover(setting: &Setting, origin: &str) -> Result<Mover, InputError> {
     })
 }
 
-/// Longest time that passes without an event.
-fn hold(setting: &Setting) -> f64 {
-    setting.control.rate_hz.max(setting.simulation.rate_hz).recip()
+/// Integration steps of the whole run.
+fn work(setting: &Setting, plant: &Plant) -> f64 {
+    let rate = setting.control.rate_hz.max(setting.simulation.rate_hz);
+    plant.steps_for(rate.recip()) * rate * setting.simulation.duration_s
 }
 
 fn bar(setting: &Setting, mover: &Mover, rows: usize) -> ProgressBar {
     let work = match mover {
-        Mover::Driven { plant, .. } => {
-            plant.steps_for(hold(setting)) * setting.control.rate_hz * setting.simulation.duration_s
-        }
+        Mover::Driven { plant, .. } => work(setting, plant),
         Mover::Led => rows as f64,
     };
     if work > LONG && std::io::stderr().is_terminal() {
