@@ -67,6 +67,7 @@ fn show(device: Option<&Runner>, rig_path: &Path, trial: &Path, out: &Path) -> R
     let host = run(&Runner::Host)?;
     let device = device.map(run).transpose()?;
     print_side_by_side(&rig, &host, device.as_ref())?;
+    host.notices().iter().for_each(|notice| println!("   note: {notice}"));
     outputs.write(&rig, &[host], &options, Place::Host)?;
     Ok(out.join("replay.html"))
 }

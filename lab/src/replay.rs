@@ -63,6 +63,14 @@ pub struct Replayed {
     pub trace: Trace,
 }
 
+impl Replayed {
+    /// What a reader should know, of the settings first and then of the run.
+    #[must_use]
+    pub fn notices(&self) -> Vec<String> {
+        self.plan.notices.iter().cloned().chain(self.trace.notices(&self.plan)).collect()
+    }
+}
+
 /// Runs the command.
 ///
 /// # Errors
@@ -76,6 +84,9 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     let mut replayed = Vec::with_capacity(recordings.len());
     for recording in recordings {
         replayed.push(replay(&runner, &rig, &args.rig, recording, &args.options)?);
+    }
+    for one in &replayed {
+        one.notices().iter().for_each(|notice| eprintln!("{}: {notice}", one.recording.name));
     }
     print_table(&rig, &replayed)?;
     if let (Some(outputs), Some(folder)) = (outputs, &args.out) {
@@ -104,9 +115,6 @@ pub fn replay(
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    for notice in plan.notices.iter().chain(&trace.notices(&plan)) {
-        eprintln!("{}: {notice}", recording.name);
-    }
     Ok(Replayed { recording, plan, trace })
 }
 
@@ -223,7 +231,7 @@ fn page(rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Pa
                 force: r.plan.samples.iter().map(|sample| sample.force).collect(),
                 contact: r.trace.contact(),
                 methods: r.trace.methods(&r.plan.samples),
-                notices: r.plan.notices.iter().cloned().chain(r.trace.notices(&r.plan)).collect(),
+                notices: r.notices(),
             })
             .collect(),
     }

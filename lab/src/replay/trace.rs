@@ -70,14 +70,17 @@ impl Trace {
                 "{restarts} gaps in time, longer than the velocity filter can bridge: it began anew there"
             ));
         }
-        for (method, estimates) in &self.columns {
-            let unsure = |flag| estimates.iter().filter(|estimate| estimate.flags.contains(flag)).count();
-            if unsure(Flags::DAMPING_UNCERTAIN) * 2 > contact {
-                notices.push(format!(
-                    "{}: B is not known to better than 30 % for most of the contact; the tool has to move more, or faster",
-                    method.name()
-                ));
-            }
+        let unsure = |estimates: &[Estimate]| {
+            let wide = estimates.iter().filter(|estimate| estimate.flags.contains(Flags::DAMPING_UNCERTAIN));
+            wide.count() * 2 > contact
+        };
+        let names: Vec<&str> =
+            self.columns.iter().filter(|(_, estimates)| unsure(estimates)).map(|(method, _)| method.name()).collect();
+        if !names.is_empty() {
+            notices.push(format!(
+                "{}: for most of the contact B is not known to better than 30 %; the tool has to move more, or faster",
+                names.join(", ")
+            ));
         }
         notices
     }
