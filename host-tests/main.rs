@@ -1,1 +1,7 @@
-fn main() {}
+//! The library on a host, against other algorithms, other libraries, real recordings and bad weather.
+
+mod golden;
+mod recordings;
+mod reference;
+mod simulator;
+mod tolerance;
