@@ -88,11 +88,11 @@ fn the_library_forgets_like_padasip_and_rolls_like_statsmodels() {
         for (got, want) in
             [(recursion.estimate.stiffness, forgetting[k].x), (recursion.estimate.damping, forgetting[k].y)]
         {
-            ewrls_errors.compare("ewrls", got.into(), want, want.abs(), 1e-4 * want.abs() + 1e-4);
+            ewrls_errors.compare("ewrls", got.into(), want, want.abs(), 1e-5 * want.abs() + 1e-5);
         }
         if k >= 49 {
             for (got, want) in [(block.estimate.stiffness, rolling[k].x), (block.estimate.damping, rolling[k].y)] {
-                bls_errors.compare("bls", got.into(), want, want.abs(), 1e-4 * want.abs());
+                bls_errors.compare("bls", got.into(), want, want.abs(), 1e-5 * want.abs());
             }
         }
     }
@@ -146,7 +146,7 @@ fn one_step_of_mean_fourth_is_that_of_numpy_and_scipy() {
         both_close("whole minimum", reference::whole_minimum(rows), Theta::new(whole_k, whole_b), 1e-6);
         let here = Impedance { stiffness: k0 as f32, damping: b0 as f32 };
         let found = law.line_search(Recent::of(&observations[window]), here).expect("a step");
-        errors.compare("length", found.length.into(), root, root, 1e-4 * root);
+        errors.compare("length", found.length.into(), root, root, 1e-5 * root);
     }
     errors.conclude("blmf step in f32 against numpy roots", 20);
 }
