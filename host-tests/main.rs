@@ -1,8 +1,11 @@
 //! The library on a host, against other algorithms, other libraries, real recordings and bad weather.
 
 mod golden;
+mod invariants;
+mod mathematics;
 mod parity;
 mod recordings;
 mod reference;
+mod rig;
 mod simulator;
 mod tolerance;
