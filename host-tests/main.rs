@@ -1,5 +1,6 @@
 //! The library on a host, against other algorithms, other libraries, real recordings and bad weather.
 
+mod degenerate;
 mod golden;
 mod invariants;
 mod mathematics;
