@@ -2,10 +2,12 @@
 
 mod degenerate;
 mod golden;
+mod intervals;
 mod invariants;
 mod mathematics;
 mod parity;
 mod recordings;
+mod recovery;
 mod reference;
 mod rig;
 mod simulator;

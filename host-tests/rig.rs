@@ -13,7 +13,12 @@ pub fn bench(stream: StreamConfig) -> Bench {
 
 /// Everything runs, the block laws as `block` says.
 pub fn bench_with(stream: StreamConfig, block: BlockConfig) -> Bench {
-    Bench::new(&BenchConfig {
+    Bench::new(&BenchConfig { block, ..settings(stream) }).expect("sound settings")
+}
+
+/// Everything runs with the settings of the paper.
+pub fn settings(stream: StreamConfig) -> BenchConfig {
+    BenchConfig {
         stream,
         methods: Method::ALL.into_iter().fold(Methods::default(), Methods::with),
         rls: EwrlsConfig::rls(),
@@ -21,9 +26,8 @@ pub fn bench_with(stream: StreamConfig, block: BlockConfig) -> Bench {
         sprls: SprlsConfig::default(),
         reset_rls: ResetRlsConfig::default(),
         gradient: GradientConfig::default(),
-        block,
-    })
-    .expect("sound settings")
+        block: BlockConfig::default(),
+    }
 }
 
 /// What came of each sample.

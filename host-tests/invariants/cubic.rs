@@ -6,7 +6,6 @@ use crate::tolerance::close;
 use palpate::cubic::depressed_root;
 use palpate::{BlockConfig, BlockLeastMeanFourth, Direction, Impedance, Observation, Recent};
 use proptest::collection::vec;
-use proptest::prelude::*;
 
 const EPS: f64 = f32::EPSILON as f64;
 

@@ -2,6 +2,7 @@
 
 use super::{Case, EPS, Parity};
 use crate::reference::{self, Row};
+use crate::rig;
 use crate::tolerance::Ledger;
 use palpate::{
     BlockConfig, BlockLeastSquares, Flags, FrontEnd, FrontEndConfig, FrontEndState, Identifier, StreamConfig, Velocity,
@@ -83,4 +84,23 @@ fn samples_to_estimate() {
         parity.contact(&case.name, &checkpoints);
     }
     parity.conclude("simulated", 3000);
+}
+
+#[test]
+fn the_bench_runs_the_very_laws_that_are_tested_bare() {
+    let case = Case::simulated().swap_remove(3);
+    let (mut bench, mut laws, mut compared) = (rig::bench(StreamConfig::BENCH), rig::Bare::all(), 0);
+    for sample in &case.samples[..3000] {
+        let estimates = bench.update(*sample).expect("a good sample");
+        if estimates[0].flags.contains(Flags::NO_CONTACT) {
+            continue;
+        }
+        let newest = bench.recent().newest().expect("a row");
+        for (law, e) in laws.iter_mut().zip(&estimates) {
+            let step = (law.update)(newest);
+            assert_eq!((e.impedance, e.innovation), (step.estimate, step.innovation), "{}", law.method.name());
+            compared += 1;
+        }
+    }
+    assert!(compared > 9 * 2000, "{compared}");
 }
