@@ -1,1 +1,14 @@
-fn main() {}
+//! The library on a host, against other algorithms, other libraries, real recordings and bad weather.
+
+mod degenerate;
+mod golden;
+mod intervals;
+mod invariants;
+mod mathematics;
+mod parity;
+mod recordings;
+mod recovery;
+mod reference;
+mod rig;
+mod simulator;
+mod tolerance;

@@ -1,0 +1,85 @@
+//! Units: powers of two change no bit, and neither nanonewtons nor tens of kilonewtons cost accuracy.
+
+use crate::rig;
+use crate::simulator::Trial;
+use palpate::{FrontEndConfig, GateConfig, Method, Observation, Sample, Sensors, StreamConfig, Units};
+
+fn bench_samples(seed: u64) -> Vec<Sample> {
+    Trial { seconds: 2.5, ..Trial::bench("K 300, B 5", |_| (300.0, 5.0)) }.samples(seed)
+}
+
+/// The bench with every length times `length` and every force times `force`.
+fn scaled(samples: &[Sample], length: f64, force: f64) -> Vec<Sample> {
+    let times = |value: f32, factor: f64| (f64::from(value) * factor) as f32;
+    samples
+        .iter()
+        .map(|s| Sample { position: times(s.position, length), force: times(s.force, force), elapsed: s.elapsed })
+        .collect()
+}
+
+fn stream(units: Units, length: f32, force: f32) -> StreamConfig {
+    let (bench, gate) = (StreamConfig::BENCH, GateConfig::BENCH);
+    let gate = GateConfig { on_force: gate.on_force * force, off_force: gate.off_force * force, ..gate };
+    StreamConfig {
+        front_end: FrontEndConfig { units, gate, ..FrontEndConfig::BENCH },
+        sensors: Sensors {
+            position_resolution: bench.sensors.position_resolution * length,
+            force_resolution: bench.sensors.force_resolution * force,
+        },
+        ..bench
+    }
+}
+
+#[test]
+fn powers_of_two_change_no_bit_but_the_exponent() {
+    let samples = bench_samples(3);
+    let want = rig::run(&mut rig::bench(StreamConfig::BENCH), &samples);
+    for (length, force) in [(-13, -20), (9, 12), (-30, 5), (20, -40)] {
+        let (length, force) = (2_f32.powi(length), 2_f32.powi(force));
+        let units = Units { penetration: length, rate: length, force };
+        let mut bench = rig::bench(stream(units, length, force));
+        let got = rig::run(&mut bench, &scaled(&samples, length.into(), force.into()));
+        for (k, (got, want)) in got.iter().zip(&want).enumerate() {
+            let (got, want) = (got.expect("a good sample"), want.expect("a good sample"));
+            for (method, (got, want)) in Method::ALL.iter().zip(got.iter().zip(&want)) {
+                let mut back = *got;
+                for pair in [&mut back.impedance, &mut back.half_width] {
+                    pair.stiffness *= length / force;
+                    pair.damping *= length / force;
+                }
+                back.innovation /= force;
+                assert_eq!(rig::bits(&back), rig::bits(want), "{} at sample {k}, {length:e}, {force:e}", method.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn nanonewtons_and_tens_of_kilonewtons_are_identified_as_well_as_newtons() {
+    let samples = bench_samples(4);
+    // Bench: 13.5 mm and 4 N. Micrometres and nanonewtons; metres and tens of kilonewtons.
+    for (length, force) in [(1e-6 / 0.0135, 1e-9 / 4.0), (1.0 / 0.0135, 1e4 / 4.0)] {
+        let bench = Units::BENCH_RANGE;
+        let units = Units::for_range(Observation {
+            penetration: (f64::from(bench.penetration) * length) as f32,
+            rate: (f64::from(bench.rate) * length) as f32,
+            force: (f64::from(bench.force) * force) as f32,
+        });
+        let mut bench = rig::bench(stream(units, length as f32, force as f32));
+        let last = rig::run(&mut bench, &scaled(&samples, length, force)).pop().expect("samples").expect("a good one");
+        let plain =
+            rig::run(&mut rig::bench(StreamConfig::BENCH), &samples).pop().expect("samples").expect("a good one");
+        for (method, (got, want)) in Method::ALL.iter().zip(last.iter().zip(&plain)) {
+            let error = |got: f32, truth: f64| (f64::from(got) * length / force / truth - 1.0).abs();
+            let plain_error = |got: f32, truth: f64| (f64::from(got) / truth - 1.0).abs();
+            let errors = [error(got.impedance.stiffness, 300.0), error(got.impedance.damping, 5.0)];
+            let plain = [plain_error(want.impedance.stiffness, 300.0), plain_error(want.impedance.damping, 5.0)];
+            println!("{:<12} {length:.1e} {force:.1e}: errors {errors:.4?}, on the bench {plain:.4?}", method.name());
+            // The unit is the nearest power of two, so settings act as on a bench of up to 1.42 times the size, and a
+            // law that still remembers its prior feels that; where it is settled the errors are alike.
+            for (got, plain) in errors.iter().zip(plain) {
+                assert!(*got <= 1.5 * plain + 0.02, "{}: {errors:?} against {plain:?}", method.name());
+            }
+        }
+    }
+}
