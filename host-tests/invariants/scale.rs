@@ -34,21 +34,25 @@ fn stream(units: Units, length: f32, force: f32) -> StreamConfig {
 fn powers_of_two_change_no_bit_but_the_exponent() {
     let samples = bench_samples(3);
     let want = rig::run(&mut rig::bench(StreamConfig::BENCH), &samples);
-    for (length, force) in [(-13, -20), (9, 12), (-30, 5), (20, -40)] {
-        let (length, force) = (2_f32.powi(length), 2_f32.powi(force));
-        let units = Units { penetration: length, rate: length, force };
-        let mut bench = rig::bench(stream(units, length, force));
-        let got = rig::run(&mut bench, &scaled(&samples, length.into(), force.into()));
+    for (length, force, time) in [(-13, -20, 0), (9, 12, -4), (-30, 5, 7), (20, -40, 3)] {
+        let [length, force, time] = [length, force, time].map(|exponent| 2_f32.powi(exponent));
+        let mut config = stream(Units { penetration: length, rate: length / time, force }, length, force);
+        config.front_end.period *= time;
+        config.front_end.cutoff /= time;
+        let mut samples = scaled(&samples, length.into(), force.into());
+        samples.iter_mut().for_each(|sample| sample.elapsed *= time);
+        let got = rig::run(&mut rig::bench(config), &samples);
         for (k, (got, want)) in got.iter().zip(&want).enumerate() {
             let (got, want) = (got.expect("a good sample"), want.expect("a good sample"));
             for (method, (got, want)) in Method::ALL.iter().zip(got.iter().zip(&want)) {
                 let mut back = *got;
                 for pair in [&mut back.impedance, &mut back.half_width] {
                     pair.stiffness *= length / force;
-                    pair.damping *= length / force;
+                    pair.damping *= length / time / force;
                 }
                 back.innovation /= force;
-                assert_eq!(rig::bits(&back), rig::bits(want), "{} at sample {k}, {length:e}, {force:e}", method.name());
+                let what = format!("{} at sample {k}, {length:e} m, {force:e} N, {time:e} s", method.name());
+                assert_eq!(rig::bits(&back), rig::bits(want), "{what}");
             }
         }
     }
