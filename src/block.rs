@@ -2,7 +2,7 @@
 
 use crate::confidence::Confidence;
 use crate::contact::Impedance;
-use crate::error::{ConfigError, require};
+use crate::error::{ConfigError, require, require_not_negative};
 use crate::estimate::Flags;
 use crate::law::Step;
 use crate::math::larger;
@@ -20,12 +20,15 @@ pub struct BlockConfig {
     /// Independence of penetration and rate (determinant over the product of the diagonal) at and below which B is
     /// held, 1e-6 to 0.1. In single precision the solution loses its last digit at about 1e-6.
     pub independence_floor: f32,
+    /// Rms rate over the window at and below which B is held, internal units, zero or above. A filter lets the rate of a
+    /// held tool die away by decades a second without ever reaching zero; B would be rounding divided by next to nothing.
+    pub rate_floor: f32,
 }
 
 impl Default for BlockConfig {
-    /// 300 samples, at least 20 of them, 1e-4.
+    /// 300 samples, at least 20 of them, 1e-4, and 1e-4 (0.1 mm/s on the bench, less than one count of its encoder in a window).
     fn default() -> Self {
-        Self { window: 300, minimum_fill: 20, independence_floor: 1e-4 }
+        Self { window: 300, minimum_fill: 20, independence_floor: 1e-4, rate_floor: 1e-4 }
     }
 }
 
@@ -43,6 +46,7 @@ impl BlockConfig {
             "at least 2 samples and at most the window",
         )?;
         require((1e-6..=0.1).contains(&self.independence_floor), "independence_floor", "between 1e-6 and 0.1")?;
+        require_not_negative(self.rate_floor, "rate_floor")?;
         Ok(self)
     }
 }
@@ -92,9 +96,11 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
-    /// Both where the columns are independent, K alone where they are in line, neither where nothing moved.
-    pub fn of(sums: &Sums, independence_floor: f32) -> Self {
-        if let Some(inverse) = sums.regressors.invert(independence_floor) {
+    /// Both where the tool moves and the columns are independent, K alone where they are in line or it holds still,
+    /// neither where it is not in the surface.
+    pub fn of(sums: &Sums, config: &BlockConfig) -> Self {
+        let moving = sums.regressors.vv > sums.samples * (config.rate_floor * config.rate_floor);
+        if let Some(inverse) = sums.regressors.invert(config.independence_floor).filter(|_| moving) {
             let correction = inverse.times(sums.misfit);
             if correction.is_finite() {
                 return Self { correction, inverse, flags: Flags::empty() };

@@ -79,13 +79,21 @@ impl BlockLeastMeanFourth {
 
     /// The line search from `estimate` over `recent`; `None` where the gradient is zero or nothing is excited.
     pub fn line_search(&self, recent: Recent<'_>, estimate: Impedance) -> Option<LineSearch> {
-        let largest = Sums::over(recent, estimate).largest_misfit;
-        let powers = Powers::over(recent, estimate, largest)?;
-        self.search(recent, estimate, largest, &powers)
+        let sums = Sums::over(recent, estimate);
+        let powers = Powers::over(recent, estimate, sums.largest_misfit)?;
+        let held = Solution::of(&sums, &self.config).flags.contains(Flags::DAMPING_HELD);
+        self.search(recent, estimate, sums.largest_misfit, &powers, held)
     }
 
-    fn search(&self, recent: Recent<'_>, estimate: Impedance, largest: f32, powers: &Powers) -> Option<LineSearch> {
-        let u = self.unit_direction(powers)?;
+    fn search(
+        &self,
+        recent: Recent<'_>,
+        estimate: Impedance,
+        largest: f32,
+        powers: &Powers,
+        held: bool,
+    ) -> Option<LineSearch> {
+        let u = self.unit_direction(powers, held)?;
         let reach = u.stiffness.abs() * powers.reach.stiffness + u.damping.abs() * powers.reach.damping;
         let (to_p, to_e) = (1.0 / reach, 1.0 / largest);
         let (mut a, mut b3, mut c3, mut d1) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
@@ -115,10 +123,12 @@ impl BlockLeastMeanFourth {
         length.is_finite().then_some(LineSearch { direction: u, a, b: -3.0 * b3, c: 3.0 * c3, d: -d1, length })
     }
 
-    fn unit_direction(&self, powers: &Powers) -> Option<Impedance> {
+    /// Along `held`, where B cannot be told, Newton's direction is that of K alone.
+    fn unit_direction(&self, powers: &Powers, held: bool) -> Option<Impedance> {
         let descent = powers.descent;
         let newton = match self.direction {
             Direction::SteepestDescent => None,
+            Direction::Newton if held => Some(Impedance { damping: 0.0, ..descent }),
             Direction::Newton => powers.hessian.solve(descent, self.config.independence_floor),
         };
         let d = newton.filter(|d| d.is_finite()).unwrap_or(descent);
@@ -129,6 +139,16 @@ impl BlockLeastMeanFourth {
         let d = Impedance { stiffness: d.stiffness / largest, damping: d.damping / largest };
         let norm = sqrt(d.stiffness * d.stiffness + d.damping * d.damping);
         Some(Impedance { stiffness: d.stiffness / norm, damping: d.damping / norm })
+    }
+}
+
+impl BlockLeastMeanFourth {
+    /// A steepest descent moves both along its gradient, whatever least squares could have solved for.
+    fn flags(&self, solution: &Solution) -> Flags {
+        match self.direction {
+            Direction::SteepestDescent => solution.flags & Flags::HELD,
+            Direction::Newton => solution.flags,
+        }
     }
 }
 
@@ -180,16 +200,17 @@ impl Law for BlockLeastMeanFourth {
             return self.config.too_few(state, recent);
         }
         let sums = Sums::over(recent, state.estimate);
-        let solution = Solution::of(&sums, self.config.independence_floor);
+        let solution = Solution::of(&sums, &self.config);
         let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
         let powers = Powers::over(recent, state.estimate, sums.largest_misfit);
-        let search = powers.and_then(|powers| self.search(recent, state.estimate, sums.largest_misfit, &powers));
+        let held = solution.flags.contains(Flags::DAMPING_HELD);
+        let search = powers.and_then(|p| self.search(recent, state.estimate, sums.largest_misfit, &p, held));
         let step = search.map_or(Impedance::ZERO, |s| Impedance::ZERO.moved(s.length, s.direction));
         let taken = Taken {
             step: state.move_by(step),
             innovation,
             noise_variance: powers.map_or(0.0, |p| p.noise_variance(sums.samples, sums.largest_misfit)),
-            flags: solution.flags & Flags::HELD,
+            flags: self.flags(&solution),
         };
         self.config.step(state, &sums, &solution, taken)
     }

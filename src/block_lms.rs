@@ -60,7 +60,7 @@ impl Law for BlockLeastMeanSquare {
             return self.config.too_few(state, recent);
         }
         let sums = Sums::over(recent, state.estimate);
-        let solution = Solution::of(&sums, self.config.independence_floor);
+        let solution = Solution::of(&sums, &self.config);
         let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
         let taken = Taken {
             step: state.move_by(steepest_step(&sums)),

@@ -8,7 +8,8 @@ use crate::window::Recent;
 /// `theta = (sum phi phi')^-1 sum phi F` over the window (eq. 5-6), by the closed 2x2 inverse.
 ///
 /// The sums are taken about the estimate before and solved for its correction, which is the same solution with less
-/// rounding. Where penetration and rate are in line, K alone is solved for and B is held.
+/// rounding. Where penetration and rate are in line, or the tool holds still, K alone is solved for and
+/// B is held.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockLeastSquares {
     config: BlockConfig,
@@ -43,7 +44,7 @@ impl Law for BlockLeastSquares {
             return self.config.too_few(state, recent);
         }
         let sums = Sums::over(recent, state.estimate);
-        let solution = Solution::of(&sums, self.config.independence_floor);
+        let solution = Solution::of(&sums, &self.config);
         let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
         let taken = Taken {
             step: state.move_by(solution.correction),

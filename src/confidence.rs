@@ -6,18 +6,17 @@ use crate::sym2::Sym2;
 
 /// The parts of the uncertainty of one estimate, in internal units.
 ///
-/// The variance of the estimate is `noise_variance * c * noise_gain + transient`, c being the number of samples that one
-/// independent value of the noise is worth; beside it stand two errors that averaging does not reduce, `remainder` and
-/// `offset_gain` times the force that a misplaced surface makes.
+/// The variance of the estimate is `noise_variance * c * noise_gain`, c being the number of samples that one independent
+/// value of the noise is worth; beside it stand two errors that averaging does not reduce, `remainder` and `offset_gain`
+/// times the force that a misplaced surface makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Confidence {
     /// Mean square of the residual.
     pub noise_variance: f32,
     /// Variance of the estimate for white noise of variance one.
     pub noise_gain: Sym2,
-    /// Variance that is left of the ignorance at the start.
-    pub transient: Sym2,
-    /// How far, at most, an iterative law still is from what it moves towards.
+    /// How far the estimate still is from what it moves towards: what is left of the start in a recursive law, the way
+    /// still to go of a descent.
     pub remainder: Impedance,
     /// Change of the estimate for a constant force of one unit.
     pub offset_gain: Impedance,
@@ -30,36 +29,24 @@ impl Confidence {
     pub const NONE: Self = Self {
         noise_variance: 0.0,
         noise_gain: Sym2::UNKNOWN,
-        transient: Sym2::ZERO,
         remainder: Impedance::ZERO,
         offset_gain: Impedance::ZERO,
         samples: 0.0,
     };
 }
 
-/// How wrong the estimate may be before the first sample: one standard deviation of K and B about zero.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Ignorance {
-    /// Of K, internal units (the bench: 1000 N/m).
-    pub stiffness: f32,
-    /// Of B, internal units (the bench: 30 N s/m).
-    pub damping: f32,
-}
-
-impl Default for Ignorance {
-    fn default() -> Self {
-        Self { stiffness: 1000.0, damping: 30.0 }
-    }
-}
-
 /// Propagates the uncertainty of any law of the form `theta += gain * innovation`.
 ///
-/// The error of the estimate obeys `error = (I - gain phi') error - gain noise`, whatever the gain is; so its variance
-/// from noise, its memory of the start and its response to a constant offset all follow exactly, for least squares with
-/// and without forgetting, self-perturbation or resets, and for a constant gain alike.
+/// The error of the estimate obeys `error = (I - gain phi') error + gain noise`, whatever the gain is. So what is left of
+/// the error at the start is `M error(0)` with M the product of these maps, and its variance from noise and its response to
+/// a constant offset follow exactly: for least squares with and without forgetting, self-perturbation or resets, and for a
+/// constant gain alike. M also tells the error at the start, from how far the estimate has come:
+/// `(I - M) error(0) = start - estimate`. No prior knowledge of the contact is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Propagation {
-    transient: Sym2,
+    start: Impedance,
+    /// M, by rows.
+    memory: [Impedance; 2],
     noise_gain: Sym2,
     offset_gain: Impedance,
     regressors: Sym2,
@@ -68,10 +55,11 @@ pub struct Propagation {
 }
 
 impl Propagation {
-    /// Before the first sample.
-    pub const fn new(ignorance: Ignorance) -> Self {
+    /// Before the first sample, with the estimate at `start`.
+    pub const fn new(start: Impedance) -> Self {
         Self {
-            transient: Sym2::diagonal(ignorance.stiffness * ignorance.stiffness, ignorance.damping * ignorance.damping),
+            start,
+            memory: [Impedance { stiffness: 1.0, damping: 0.0 }, Impedance { stiffness: 0.0, damping: 1.0 }],
             noise_gain: Sym2::ZERO,
             offset_gain: Impedance::ZERO,
             regressors: Sym2::ZERO,
@@ -84,15 +72,18 @@ impl Propagation {
     /// measured.
     pub fn advance(&mut self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) {
         let (x, v) = (o.penetration, o.rate);
-        let map = [[1.0 - gain.stiffness * x, -gain.stiffness * v], [-gain.damping * x, 1.0 - gain.damping * v]];
-        let noise = congruence(map, self.noise_gain).plus_outer(1.0, gain.stiffness, gain.damping);
-        let offset = self.offset_gain;
+        let map = [
+            Impedance { stiffness: 1.0 - gain.stiffness * x, damping: -gain.stiffness * v },
+            Impedance { stiffness: -gain.damping * x, damping: 1.0 - gain.damping * v },
+        ];
+        let [to_stiffness, to_damping] = map;
         let next = Self {
-            transient: congruence(map, self.transient),
-            noise_gain: noise,
+            start: self.start,
+            memory: map.map(|row| combine(row, self.memory)),
+            noise_gain: congruence(map, self.noise_gain).plus_outer(1.0, gain.stiffness, gain.damping),
             offset_gain: Impedance {
-                stiffness: map[0][0] * offset.stiffness + map[0][1] * offset.damping + gain.stiffness,
-                damping: map[1][0] * offset.stiffness + map[1][1] * offset.damping + gain.damping,
+                stiffness: dot(to_stiffness, self.offset_gain) + gain.stiffness,
+                damping: dot(to_damping, self.offset_gain) + gain.damping,
             },
             regressors: self.regressors.scaled(forgetting).plus_outer(1.0, x, v),
             // Innovation times residual is the increment of the least-squares cost.
@@ -106,23 +97,50 @@ impl Propagation {
     }
 
     fn is_finite(&self) -> bool {
-        self.transient.is_finite()
+        self.memory.iter().all(|row| row.is_finite())
             && self.noise_gain.is_finite()
             && self.offset_gain.is_finite()
             && self.regressors.is_finite()
             && self.residual_energy.is_finite()
     }
 
-    /// The confidence now.
-    pub fn confidence(&self) -> Confidence {
+    /// The confidence in `estimate`, which the updates have led to.
+    pub fn confidence(&self, estimate: Impedance) -> Confidence {
+        let [k, b] = self.memory;
+        // The error at the start is told from a noisy estimate, over I - M: so is its remainder.
+        let (k_told, b_told) = (1.0 / (1.0 - k.stiffness), 1.0 / (1.0 - b.damping));
         Confidence {
             noise_variance: if self.weight > 0.0 { self.residual_energy / self.weight } else { 0.0 },
-            noise_gain: self.noise_gain,
-            transient: self.transient,
-            remainder: Impedance::ZERO,
+            noise_gain: Sym2 {
+                xx: self.noise_gain.xx * k_told * k_told,
+                xv: self.noise_gain.xv * k_told * b_told,
+                vv: self.noise_gain.vv * b_told * b_told,
+            },
+            remainder: self.remainder(estimate),
             offset_gain: self.offset_gain,
             samples: self.weight,
         }
+    }
+
+    /// `M (I - M)^-1 (start - estimate)`; infinite where the estimate has not begun to move.
+    fn remainder(&self, estimate: Impedance) -> Impedance {
+        let [k, b] = self.memory;
+        let way = self.start.moved(-1.0, estimate);
+        let (k_done, b_done) = (1.0 - k.stiffness, 1.0 - b.damping);
+        let crossed = k.damping * b.stiffness;
+        let independence = k_done * b_done - crossed;
+        // Below this share of its terms the determinant is rounding.
+        if independence.abs() > 1e-5 * (k_done * b_done).abs() {
+            let at_start = Impedance {
+                stiffness: (way.stiffness * b_done + k.damping * way.damping) / independence,
+                damping: (way.damping * k_done + b.stiffness * way.stiffness) / independence,
+            };
+            return Impedance { stiffness: dot(k, at_start), damping: dot(b, at_start) };
+        }
+        // B has not been told from K yet, or nothing has been told.
+        let alone = b.stiffness == 0.0 && k.damping == 0.0 && k_done != 0.0;
+        let stiffness = if alone { k.stiffness * way.stiffness / k_done } else { f32::INFINITY };
+        Impedance { stiffness, damping: f32::INFINITY }
     }
 
     /// Independence of penetration and rate over the memory.
@@ -136,10 +154,22 @@ impl Propagation {
     }
 }
 
-/// `map * m * map'`, a sum of squares on its diagonal, so positive entries stay positive.
-fn congruence(map: [[f32; 2]; 2], m: Sym2) -> Sym2 {
-    let [[a, b], [c, d]] = map;
-    let (ax, av) = (a * m.xx + b * m.xv, a * m.xv + b * m.vv);
-    let (cx, cv) = (c * m.xx + d * m.xv, c * m.xv + d * m.vv);
-    Sym2 { xx: ax * a + av * b, xv: ax * c + av * d, vv: cx * c + cv * d }
+fn dot(row: Impedance, column: Impedance) -> f32 {
+    row.stiffness * column.stiffness + row.damping * column.damping
+}
+
+/// `row * matrix`.
+fn combine(row: Impedance, matrix: [Impedance; 2]) -> Impedance {
+    let [upper, lower] = matrix;
+    Impedance {
+        stiffness: row.stiffness * upper.stiffness + row.damping * lower.stiffness,
+        damping: row.stiffness * upper.damping + row.damping * lower.damping,
+    }
+}
+
+/// `map * m * map'`.
+fn congruence(map: [Impedance; 2], m: Sym2) -> Sym2 {
+    let [k, b] = map;
+    let (to_k, to_b) = (m.times(k), m.times(b));
+    Sym2 { xx: dot(k, to_k), xv: dot(b, to_k), vv: dot(b, to_b) }
 }

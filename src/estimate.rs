@@ -92,8 +92,8 @@ impl Sensors {
 
 /// Turns what a law found into an [`Estimate`]: internal to SI, confidence to intervals.
 ///
-/// The half-width is `t * sqrt(variance) + |remainder| + |offset_gain * K| * half a count of surface position`, where
-/// the variance is that of [`crate::Confidence`]. The residual is coloured by the filter, so n samples count as n over
+/// The half-width is `t * sqrt(variance) + |remainder| + |offset_gain * K| * half a count of surface position`, with the
+/// parts of [`crate::Confidence`]. The residual is coloured by the filter, so n samples count as n over
 /// `correlated_samples`; t is Student's for that number less two; and the noise is never taken to be less than the
 /// rounding of both sensors. It covers noise, rounding, start-up and a misplaced surface, not the bias of a model or of
 /// [`crate::Velocity::Paper`].
@@ -147,16 +147,16 @@ impl Assessor {
         let noise = larger(c.noise_variance * self.correlated_samples, rounding);
         let t = student(c.samples / self.correlated_samples - 2.0);
         let surface = stiffness.abs() * self.half_count;
-        let width = |gain: f32, transient: f32, remainder: f32, offset: f32| {
-            let variance = noise * gain + transient;
+        let width = |gain: f32, remainder: f32, offset: f32| {
+            let variance = noise * gain;
             // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
             let deviation = if variance < 0.0 { 0.0 } else { sqrt(variance) };
             let width = t * deviation + remainder.abs() + offset.abs() * surface;
             if width.is_nan() { f32::INFINITY } else { width }
         };
         Impedance {
-            stiffness: width(c.noise_gain.xx, c.transient.xx, c.remainder.stiffness, c.offset_gain.stiffness),
-            damping: width(c.noise_gain.vv, c.transient.vv, c.remainder.damping, c.offset_gain.damping),
+            stiffness: width(c.noise_gain.xx, c.remainder.stiffness, c.offset_gain.stiffness),
+            damping: width(c.noise_gain.vv, c.remainder.damping, c.offset_gain.damping),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Recursive least squares, exponentially weighted (EWRLS) or with infinite memory (RLS).
 
-use crate::confidence::Ignorance;
+use crate::contact::Impedance;
 use crate::error::{ConfigError, require};
 use crate::estimate::Flags;
 use crate::law::{Law, Step};
-use crate::recursive::{RecursiveState, check_ignorance, check_initial_covariance};
+use crate::recursive::{RecursiveState, check_initial_covariance};
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -18,19 +18,12 @@ pub struct EwrlsConfig {
     /// Bound of the covariance: while nothing moves, forgetting alone would let it grow without end (non-finite after
     /// 16 to 26 s of a held contact at 0.9967). At least `initial_covariance`, at most 1e9.
     pub covariance_limit: f32,
-    /// What may be wrong at the start, for the interval.
-    pub ignorance: Ignorance,
 }
 
 impl Default for EwrlsConfig {
     /// The paper's: forgetting 0.9967 (a horizon of 300 samples), P(0) = 10.
     fn default() -> Self {
-        Self {
-            forgetting_factor: 0.9967,
-            initial_covariance: 10.0,
-            covariance_limit: 1e6,
-            ignorance: Ignorance::default(),
-        }
+        Self { forgetting_factor: 0.9967, initial_covariance: 10.0, covariance_limit: 1e6 }
     }
 }
 
@@ -67,7 +60,6 @@ impl Ewrls {
             "covariance_limit",
             "at least initial_covariance and at most 1e9",
         )?;
-        check_ignorance(config.ignorance)?;
         Ok(Self { config })
     }
 }
@@ -76,11 +68,11 @@ impl Law for Ewrls {
     type State = RecursiveState;
 
     fn start(&self) -> RecursiveState {
-        RecursiveState::new(self.config.initial_covariance, self.config.ignorance)
+        RecursiveState::new(self.config.initial_covariance, Impedance::ZERO)
     }
 
     fn forget(&self, state: &mut RecursiveState) {
-        *state = RecursiveState { estimate: state.estimate, ..self.start() };
+        *state = RecursiveState::new(self.config.initial_covariance, state.estimate);
     }
 
     fn window(&self) -> usize {

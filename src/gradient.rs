@@ -1,11 +1,10 @@
 //! The constant-gain gradient law.
 
-use crate::confidence::{Ignorance, Propagation};
+use crate::confidence::Propagation;
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require_positive};
 use crate::estimate::Flags;
 use crate::law::{Law, Step};
-use crate::recursive::check_ignorance;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -16,14 +15,12 @@ pub struct GradientConfig {
     pub stiffness_gain: f32,
     /// Adaptation gain of B, above zero, internal units (s^2/m^2 on the bench).
     pub damping_gain: f32,
-    /// What may be wrong at the start, for the interval.
-    pub ignorance: Ignorance,
 }
 
 impl Default for GradientConfig {
     /// 100 for K and 1 for B: on the bench (8 mm and 0.15 m/s rms) a horizon of about 150 samples for K and 50 for B.
     fn default() -> Self {
-        Self { stiffness_gain: 100.0, damping_gain: 1.0, ignorance: Ignorance::default() }
+        Self { stiffness_gain: 100.0, damping_gain: 1.0 }
     }
 }
 
@@ -59,7 +56,6 @@ impl Gradient {
     pub fn new(config: GradientConfig) -> Result<Self, ConfigError> {
         require_positive(config.stiffness_gain, "stiffness_gain")?;
         require_positive(config.damping_gain, "damping_gain")?;
-        check_ignorance(config.ignorance)?;
         Ok(Self { config })
     }
 }
@@ -68,11 +64,11 @@ impl Law for Gradient {
     type State = GradientState;
 
     fn start(&self) -> GradientState {
-        GradientState { estimate: Impedance::ZERO, uncertainty: Propagation::new(self.config.ignorance) }
+        GradientState { estimate: Impedance::ZERO, uncertainty: Propagation::new(Impedance::ZERO) }
     }
 
     fn forget(&self, state: &mut GradientState) {
-        *state = GradientState { estimate: state.estimate, ..self.start() };
+        state.uncertainty = Propagation::new(state.estimate);
     }
 
     fn window(&self) -> usize {
@@ -99,7 +95,7 @@ impl Law for Gradient {
         Step {
             estimate: state.estimate,
             innovation,
-            confidence: state.uncertainty.confidence(),
+            confidence: state.uncertainty.confidence(state.estimate),
             fill: state.uncertainty.fill(Self::NOISE_FORGETTING),
             excitation: state.uncertainty.excitation(),
             flags,

@@ -78,7 +78,7 @@ pub use block::{BlockConfig, BlockState};
 pub use block_lmf::{BlockLeastMeanFourth, Direction, LineSearch};
 pub use block_lms::BlockLeastMeanSquare;
 pub use block_ls::BlockLeastSquares;
-pub use confidence::{Confidence, Ignorance, Propagation};
+pub use confidence::{Confidence, Propagation};
 pub use contact::{Impedance, Observation, Sample};
 pub use covariance::Covariance;
 pub use error::ConfigError;

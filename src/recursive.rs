@@ -1,6 +1,6 @@
 //! What the recursive least-squares laws share: estimate, covariance, uncertainty.
 
-use crate::confidence::{Ignorance, Propagation};
+use crate::confidence::Propagation;
 use crate::contact::{Impedance, Observation};
 use crate::covariance::Covariance;
 use crate::error::{ConfigError, require, require_positive};
@@ -24,9 +24,10 @@ pub struct RecursiveState {
 }
 
 impl RecursiveState {
-    pub(crate) fn new(initial_covariance: f32, ignorance: Ignorance) -> Self {
+    /// With the estimate at `estimate` and all else at its start.
+    pub(crate) fn new(initial_covariance: f32, estimate: Impedance) -> Self {
         let start = Covariance::identity(initial_covariance);
-        Self { estimate: Impedance::ZERO, covariance: start, uncertainty: Propagation::new(ignorance), start }
+        Self { estimate, covariance: start, uncertainty: Propagation::new(estimate), start }
     }
 
     /// The bare recursion: `theta += P phi / s * innovation` and the covariance behind it. Returns the gain.
@@ -53,7 +54,7 @@ impl RecursiveState {
         Step {
             estimate: self.estimate,
             innovation,
-            confidence: self.uncertainty.confidence(),
+            confidence: self.uncertainty.confidence(self.estimate),
             fill: self.uncertainty.fill(forgetting),
             excitation: self.uncertainty.excitation(),
             flags: Flags::empty(),
@@ -64,9 +65,4 @@ impl RecursiveState {
 pub(crate) fn check_initial_covariance(value: f32) -> Result<(), ConfigError> {
     require_positive(value, "initial_covariance")?;
     require(value <= 1e8, "initial_covariance", "at most 1e8 internal units")
-}
-
-pub(crate) fn check_ignorance(ignorance: Ignorance) -> Result<(), ConfigError> {
-    require_positive(ignorance.stiffness, "ignorance.stiffness")?;
-    require_positive(ignorance.damping, "ignorance.damping")
 }

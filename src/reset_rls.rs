@@ -1,9 +1,9 @@
 //! Recursive least squares with covariance resetting.
 
-use crate::confidence::Ignorance;
+use crate::contact::Impedance;
 use crate::error::{ConfigError, require};
 use crate::law::{Law, Step};
-use crate::recursive::{RecursiveState, check_ignorance, check_initial_covariance};
+use crate::recursive::{RecursiveState, check_initial_covariance};
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -14,14 +14,12 @@ pub struct ResetRlsConfig {
     pub reset_interval: u16,
     /// P(0), and P after each reset, = `initial_covariance` * I, above 0, at most 1e8.
     pub initial_covariance: f32,
-    /// What may be wrong at the start, for the interval.
-    pub ignorance: Ignorance,
 }
 
 impl Default for ResetRlsConfig {
     /// A reset every 300 samples, P = 10.
     fn default() -> Self {
-        Self { reset_interval: 300, initial_covariance: 10.0, ignorance: Ignorance::default() }
+        Self { reset_interval: 300, initial_covariance: 10.0 }
     }
 }
 
@@ -49,8 +47,13 @@ impl ResetRls {
     pub fn new(config: ResetRlsConfig) -> Result<Self, ConfigError> {
         require(config.reset_interval >= 2, "reset_interval", "at least 2 samples")?;
         check_initial_covariance(config.initial_covariance)?;
-        check_ignorance(config.ignorance)?;
         Ok(Self { config })
+    }
+}
+
+impl ResetRls {
+    fn from(&self, estimate: Impedance) -> ResetRlsState {
+        ResetRlsState { recursion: RecursiveState::new(self.config.initial_covariance, estimate), since_reset: 0 }
     }
 }
 
@@ -58,14 +61,11 @@ impl Law for ResetRls {
     type State = ResetRlsState;
 
     fn start(&self) -> ResetRlsState {
-        let recursion = RecursiveState::new(self.config.initial_covariance, self.config.ignorance);
-        ResetRlsState { recursion, since_reset: 0 }
+        self.from(Impedance::ZERO)
     }
 
     fn forget(&self, state: &mut ResetRlsState) {
-        let start = self.start();
-        let estimate = state.recursion.estimate;
-        *state = ResetRlsState { recursion: RecursiveState { estimate, ..start.recursion }, ..start };
+        *state = self.from(state.recursion.estimate);
     }
 
     fn window(&self) -> usize {

@@ -1,11 +1,11 @@
 //! Self-perturbing recursive least squares (SPRLS).
 
-use crate::confidence::Ignorance;
+use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_not_negative};
 use crate::estimate::Flags;
 use crate::law::{Law, Step};
 use crate::math::smaller;
-use crate::recursive::{RecursiveState, check_ignorance, check_initial_covariance};
+use crate::recursive::{RecursiveState, check_initial_covariance};
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -21,8 +21,6 @@ pub struct SprlsConfig {
     pub initial_covariance: f32,
     /// Bound of the covariance, at least `initial_covariance`, at most 1e9.
     pub covariance_limit: f32,
-    /// What may be wrong at the start, for the interval.
-    pub ignorance: Ignorance,
 }
 
 impl Default for SprlsConfig {
@@ -33,7 +31,6 @@ impl Default for SprlsConfig {
             perturbation_sensitivity: 2.0,
             initial_covariance: 10.0,
             covariance_limit: 1e6,
-            ignorance: Ignorance::default(),
         }
     }
 }
@@ -76,7 +73,6 @@ impl Sprls {
             "covariance_limit",
             "at least initial_covariance and at most 1e9",
         )?;
-        check_ignorance(config.ignorance)?;
         Ok(Self { config })
     }
 
@@ -89,18 +85,21 @@ impl Sprls {
     }
 }
 
+impl Sprls {
+    fn from(&self, estimate: Impedance) -> SprlsState {
+        SprlsState { recursion: RecursiveState::new(self.config.initial_covariance, estimate), innovation_before: 0.0 }
+    }
+}
+
 impl Law for Sprls {
     type State = SprlsState;
 
     fn start(&self) -> SprlsState {
-        let recursion = RecursiveState::new(self.config.initial_covariance, self.config.ignorance);
-        SprlsState { recursion, innovation_before: 0.0 }
+        self.from(Impedance::ZERO)
     }
 
     fn forget(&self, state: &mut SprlsState) {
-        let start = self.start();
-        let estimate = state.recursion.estimate;
-        *state = SprlsState { recursion: RecursiveState { estimate, ..start.recursion }, ..start };
+        *state = self.from(state.recursion.estimate);
     }
 
     fn window(&self) -> usize {
