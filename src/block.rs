@@ -164,7 +164,6 @@ impl BlockConfig {
                 remainder: solution.correction.moved(-1.0, taken.step),
                 offset_gain: solution.inverse.times(sums.regressor),
                 samples: sums.samples,
-                ..Confidence::NONE
             },
             fill: sums.samples / f32::from(self.window),
             excitation: sums.regressors.independence(),

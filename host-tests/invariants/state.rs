@@ -38,12 +38,8 @@ fn the_covariance_of_forgetting_is_always_a_covariance() {
     runner(400)
         .run(&input, |(observations, forgetting_factor, log)| {
             let initial_covariance = 10_f32.powf(log).min(1e8);
-            let config = EwrlsConfig {
-                forgetting_factor,
-                initial_covariance,
-                covariance_limit: initial_covariance.max(1e6),
-                ..EwrlsConfig::default()
-            };
+            let config =
+                EwrlsConfig { forgetting_factor, initial_covariance, covariance_limit: initial_covariance.max(1e6) };
             let law = Ewrls::new(config).expect("sound settings");
             let mut state = law.start();
             for o in &observations {
@@ -66,7 +62,6 @@ fn the_covariance_of_self_perturbation_is_always_a_covariance() {
                 perturbation_sensitivity,
                 initial_covariance: 10_f32.powf(log).min(1e8),
                 covariance_limit: 1e9,
-                ..SprlsConfig::default()
             };
             let law = Sprls::new(config).expect("sound settings");
             let mut state = law.start();

@@ -295,20 +295,14 @@ fn bench(front_end: FrontEndConfig, figures: &Figures, options: &Options) -> Ben
         stream,
         methods: options.methods.iter().fold(Methods::default(), |methods, method| methods.with(*method)),
         rls: EwrlsConfig { initial_covariance, covariance_limit, ..EwrlsConfig::rls() },
-        ewrls: EwrlsConfig {
-            initial_covariance,
-            covariance_limit,
-            forgetting_factor: options.forgetting,
-            ..EwrlsConfig::default()
-        },
+        ewrls: EwrlsConfig { initial_covariance, covariance_limit, forgetting_factor: options.forgetting },
         sprls: SprlsConfig {
             initial_covariance,
             covariance_limit,
             perturbation_gain: options.sprls_beta,
             perturbation_sensitivity: options.sprls_gamma,
-            ..SprlsConfig::default()
         },
-        reset_rls: ResetRlsConfig { initial_covariance, reset_interval: options.window, ..ResetRlsConfig::default() },
+        reset_rls: ResetRlsConfig { initial_covariance, reset_interval: options.window },
         gradient: GradientConfig::default(),
         block: BlockConfig::of(options.window),
     }
