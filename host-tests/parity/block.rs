@@ -1,7 +1,7 @@
 //! Block least squares against QR over the window.
 
-use super::{Parity, on_all, rounding};
-use crate::reference::{self, Row, Theta};
+use super::{Parity, on_all, rounding, rounding_of_stiffness, silent_about_damping};
+use crate::reference::{self, Theta};
 use palpate::{BlockConfig, BlockLeastSquares, Flags, Law, Recent};
 
 const EVERY: usize = 11;
@@ -23,7 +23,7 @@ fn window_of(name: &'static str, window: u16, flat: [f64; 2]) {
                 }
                 let seen = &rows[(k + 1).saturating_sub(window.into())..=k];
                 let batch = if step.flags.contains(Flags::DAMPING_HELD) {
-                    assert!(nothing_to_say_of_damping(seen), "{case}: B was held without need");
+                    assert!(silent_about_damping(seen), "{case}: B was held without need");
                     (
                         Theta::new(reference::stiffness_alone(seen, damping), damping),
                         rounding(seen) * reference::independence(seen),
@@ -36,13 +36,6 @@ fn window_of(name: &'static str, window: u16, flat: [f64; 2]) {
             parity.contact(case, &checkpoints);
         },
     );
-}
-
-/// Columns in line up to the library's default floor, or a rate that has died away to nothing.
-fn nothing_to_say_of_damping(rows: &[Row]) -> bool {
-    // A rate whose square has no finite inverse in single precision.
-    let dead = rows.iter().all(|row| row.v.abs() < 1e-18);
-    dead || reference::independence(rows) < 1.1e-4
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Descent laws, each step from the library's own estimate before it: left to itself the way down is chaotic.
 
-use super::{Parity, on_all, rounding};
+use super::{Parity, on_all, rounding, silent_about_damping};
 use crate::reference::{self, Row, Theta};
 use nalgebra::Vector2;
 use palpate::{BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockState, Direction, Flags, Law, Recent};
@@ -27,6 +27,9 @@ fn step_by_step<L: Law<State = BlockState>>(name: &'static str, law: &L, directi
                     continue;
                 }
                 let seen = &rows[(k + 1).saturating_sub(WINDOW)..=k];
+                if silent_about_damping(seen) {
+                    continue;
+                }
                 let (along, power) = direction(seen, before);
                 let after = before + along * reference::line_minimum(seen, before, along, power);
                 checkpoints.push((state.estimate, after, rounding(seen)));
@@ -88,7 +91,7 @@ fn newton_steps_on_one_window_end_at_its_whole_minimum() {
             let mut checkpoints = Vec::new();
             for k in (WINDOW.min(contact.len()) - 1..contact.len()).step_by(EVERY) {
                 let first = (k + 1).saturating_sub(WINDOW);
-                if reference::independence(&rows[first..=k]) < 1e-3 {
+                if silent_about_damping(&rows[first..=k]) {
                     continue;
                 }
                 let mut state = law.start();

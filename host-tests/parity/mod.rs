@@ -66,6 +66,19 @@ fn rounding(rows: &[Row]) -> Theta {
     Theta::new(1.0 / rms(|r| r.x), 1.0 / rms(|r| r.v)) * (EPS * rms(|r| r.force) / rho)
 }
 
+/// The same where K alone is solved for, and B is what it was.
+fn rounding_of_stiffness(rows: &[Row]) -> Theta {
+    let sum = |pick: fn(&Row) -> f64| rows.iter().map(|r| pick(r).powi(2)).sum::<f64>();
+    Theta::new(EPS * (sum(|r| r.force) / sum(|r| r.x)).sqrt(), f64::MIN_POSITIVE)
+}
+
+/// Columns in line up to the library's default floor; or a rate of less than a ten-thousandth of the bench's full scale,
+/// which is what is left in the filter of a tool that stands.
+fn silent_about_damping(rows: &[Row]) -> bool {
+    let energy = rows.iter().map(|row| row.v * row.v).sum::<f64>() / rows.len() as f64;
+    energy.sqrt() < 2e-5 || reference::independence(rows) < 1.1e-4
+}
+
 /// The errors of one method on one kind of trial.
 struct Parity {
     method: &'static str,
