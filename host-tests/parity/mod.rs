@@ -72,11 +72,11 @@ fn rounding_of_stiffness(rows: &[Row]) -> Theta {
     Theta::new(EPS * (sum(|r| r.force) / sum(|r| r.x)).sqrt(), f64::MIN_POSITIVE)
 }
 
-/// Columns in line up to the library's default floor; or a rate of less than a ten-thousandth of the bench's full scale,
-/// which is what is left in the filter of a tool that stands.
+/// Columns in line up to the library's default floor; or a rate below the library's default floor, less than a thousandth
+/// of the bench's full scale, which is what is left in the filter of a tool that stands.
 fn silent_about_damping(rows: &[Row]) -> bool {
     let energy = rows.iter().map(|row| row.v * row.v).sum::<f64>() / rows.len() as f64;
-    energy.sqrt() < 2e-5 || reference::independence(rows) < 1.1e-4
+    energy.sqrt() < 1.1e-4 || reference::independence(rows) < 1.1e-4
 }
 
 /// The errors of one method on one kind of trial.
