@@ -24,10 +24,7 @@ fn window_of(name: &'static str, window: u16, flat: [f64; 2]) {
                 let seen = &rows[(k + 1).saturating_sub(window.into())..=k];
                 let batch = if step.flags.contains(Flags::DAMPING_HELD) {
                     assert!(silent_about_damping(seen), "{case}: B was held without need");
-                    (
-                        Theta::new(reference::stiffness_alone(seen, damping), damping),
-                        rounding(seen) * reference::independence(seen),
-                    )
+                    (Theta::new(reference::stiffness_alone(seen, damping), damping), rounding_of_stiffness(seen))
                 } else {
                     (reference::least_squares(seen), rounding(seen))
                 };
