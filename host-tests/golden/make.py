@@ -81,8 +81,9 @@ def front_end(rng):
     b, a = butter(2, 20.0, fs=1 / period)
     zi = lfilter_zi(b, a)
 
-    def low_pass(signal, rest):
-        return np.concatenate([[rest], lfilter(b, a, signal, zi=zi * rest)[0]])
+    def low_pass(signal, first):
+        # Of the first sample no rate is known; the filters then begin at rest in the first row that is whole.
+        return np.concatenate([[first], lfilter(b, a, signal, zi=zi * signal[0])[0]])
 
     depth = np.maximum(position, 0)
     two_sample_mean = lambda s: 0.5 * (s[1:] + s[:-1])  # noqa: E731

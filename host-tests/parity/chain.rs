@@ -5,7 +5,8 @@ use crate::reference::{self, Row};
 use crate::rig;
 use crate::tolerance::Ledger;
 use palpate::{
-    BlockConfig, BlockLeastSquares, Flags, FrontEnd, FrontEndConfig, FrontEndState, Identifier, StreamConfig, Velocity,
+    BlockConfig, BlockLeastSquares, Flags, FrontEnd, FrontEndConfig, FrontEndState, Identifier, Sample, StreamConfig,
+    Velocity,
 };
 
 /// The textbook front end on all samples, in SI.
@@ -28,9 +29,11 @@ fn front_end(velocity: Velocity, name: &str) {
             let rows = textbook(case, velocity);
             let full = [largest(&rows, |r| r.x), largest(&rows, |r| r.v), largest(&rows, |r| r.force)];
             let period = f64::from(case.front_end.period);
-            // Ten roundings of the full scale; and in the rate the rounding of the depth, over one period.
+            // Ten roundings of the full scale; and in the rate the rounding of the position, over one period.
             let tolerance = full.map(|f| 3e-6 * f);
-            let tolerance = [tolerance[0], tolerance[1] + EPS * full[0] / period, tolerance[2]];
+            let way = |sample: &Sample| f64::from(sample.position - case.front_end.surface).abs();
+            let farthest = case.samples.iter().map(way).fold(0.0, f64::max);
+            let tolerance = [tolerance[0], tolerance[1] + EPS * farthest / period, tolerance[2]];
             for (row, sample) in rows.iter().zip(&case.samples) {
                 let o = library.update(&mut state, *sample).expect("a good sample").observation;
                 let si = [o.penetration * units.penetration, o.rate * units.rate, o.force * units.force];

@@ -33,12 +33,8 @@ fn recursive<L: Law>(
 }
 
 fn weighted_least_squares(name: &'static str, forgetting: f32, covariance: f32, flat: [f64; 2]) {
-    let config = EwrlsConfig {
-        forgetting_factor: forgetting,
-        initial_covariance: covariance,
-        covariance_limit: NO_LIMIT,
-        ..EwrlsConfig::default()
-    };
+    let config =
+        EwrlsConfig { forgetting_factor: forgetting, initial_covariance: covariance, covariance_limit: NO_LIMIT };
     let law = Ewrls::new(config).expect("sound settings");
     let prior = Some(Prior { at: Theta::zeros(), covariance: covariance.into() });
     on_all(

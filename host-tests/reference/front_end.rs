@@ -41,7 +41,15 @@ pub struct FrontEnd {
     surface: f64,
     matched: bool,
     memories: [[f64; 2]; 3],
-    before: Option<(f64, f64)>,
+    before: Option<Reading>,
+    fresh: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Reading {
+    position: f64,
+    depth: f64,
+    force: f64,
 }
 
 impl FrontEnd {
@@ -54,19 +62,23 @@ impl FrontEnd {
             matched: config.velocity == palpate::Velocity::Matched,
             memories: [[0.0; 2]; 3],
             before: None,
+            fresh: true,
         }
     }
 
     /// One sample, in SI.
     pub fn update(&mut self, sample: &Sample) -> Row {
-        let depth = (f64::from(sample.position) - self.surface).max(0.0);
-        let force = f64::from(sample.force);
+        let position = f64::from(sample.position) - self.surface;
+        let (depth, force) = (position.max(0.0), f64::from(sample.force));
         let filter = self.filter;
-        let Some((depth_before, force_before)) = self.before.replace((depth, force)) else {
-            self.memories = [depth, 0.0, force].map(|value| filter.rest(value));
+        let Some(before) = self.before.replace(Reading { position, depth, force }) else {
             return Row { x: depth, v: 0.0, force };
         };
-        let inputs = [0.5 * (depth + depth_before), (depth - depth_before) / self.period, 0.5 * (force + force_before)];
+        let way = if self.matched { depth - before.depth } else { position - before.position };
+        let inputs = [0.5 * (depth + before.depth), way / self.period, 0.5 * (force + before.force)];
+        if std::mem::take(&mut self.fresh) {
+            self.memories = inputs.map(|value| filter.rest(value));
+        }
         let [mut x, mut v, mut f] = [0.0; 3];
         for ((output, memory), input) in [&mut x, &mut v, &mut f].into_iter().zip(&mut self.memories).zip(inputs) {
             *output = filter.filter(memory, input);
