@@ -159,7 +159,7 @@ impl BlockConfig {
             estimate: state.estimate,
             innovation: taken.innovation,
             confidence: Confidence {
-                noise_variance: taken.noise_variance,
+                noise: solution.inverse.scaled(taken.noise_variance),
                 noise_gain: solution.inverse,
                 remainder: solution.correction.moved(-1.0, taken.step),
                 offset_gain: solution.inverse.times(sums.regressor),

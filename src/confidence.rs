@@ -6,14 +6,14 @@ use crate::sym2::Sym2;
 
 /// The parts of the uncertainty of one estimate, in internal units.
 ///
-/// The variance of the estimate is `noise_variance * c * noise_gain`, c being the number of samples that one independent
-/// value of the noise is worth; beside it stand two errors that averaging does not reduce, `remainder` and `offset_gain`
-/// times the force that a misplaced surface makes.
+/// The variance of the estimate is `c * noise`, c being the number of samples that one independent value of the noise is
+/// worth; beside it stand two errors that averaging does not reduce, `remainder` and `offset_gain` times the force that a
+/// misplaced surface makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Confidence {
-    /// Mean square of the residual.
-    pub noise_variance: f32,
-    /// Variance of the estimate for white noise of variance one.
+    /// Variance of the estimate if the residuals that were seen are white noise.
+    pub noise: Sym2,
+    /// The same for white noise of variance one.
     pub noise_gain: Sym2,
     /// How far the estimate still is from what it moves towards: what is left of the start in a recursive law, the way
     /// still to go of a descent.
@@ -27,7 +27,7 @@ pub struct Confidence {
 impl Confidence {
     /// Nothing is known.
     pub const NONE: Self = Self {
-        noise_variance: 0.0,
+        noise: Sym2::UNKNOWN,
         noise_gain: Sym2::UNKNOWN,
         remainder: Impedance::ZERO,
         offset_gain: Impedance::ZERO,
@@ -38,8 +38,9 @@ impl Confidence {
 /// Propagates the uncertainty of any law of the form `theta += gain * innovation`.
 ///
 /// The error of the estimate obeys `error = (I - gain phi') error + gain noise`, whatever the gain is. So what is left of
-/// the error at the start is `M error(0)` with M the product of these maps, and its variance from noise and its response to
-/// a constant offset follow exactly: for least squares with and without forgetting, self-perturbation or resets, and for a
+/// the error at the start is `M error(0)` with M the product of these maps, and its variance from noise (each sample's own,
+/// so a stretch that fits badly is remembered for as long as the estimate rests on it) and its response to a constant
+/// offset follow exactly: for least squares with and without forgetting, self-perturbation or resets, and for a
 /// constant gain alike. M also tells the error at the start, from how far the estimate has come:
 /// `(I - M) error(0) = start - estimate`. No prior knowledge of the contact is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,10 +48,10 @@ pub struct Propagation {
     start: Impedance,
     /// M, by rows.
     memory: [Impedance; 2],
+    noise: Sym2,
     noise_gain: Sym2,
     offset_gain: Impedance,
     regressors: Sym2,
-    residual_energy: f32,
     weight: f32,
 }
 
@@ -60,16 +61,16 @@ impl Propagation {
         Self {
             start,
             memory: [Impedance { stiffness: 1.0, damping: 0.0 }, Impedance { stiffness: 0.0, damping: 1.0 }],
+            noise: Sym2::ZERO,
             noise_gain: Sym2::ZERO,
             offset_gain: Impedance::ZERO,
             regressors: Sym2::ZERO,
-            residual_energy: 0.0,
             weight: 0.0,
         }
     }
 
-    /// Takes the gain and innovation of one update. `forgetting`, below 1, sets over how many samples the noise is
-    /// measured.
+    /// Takes the gain and innovation of one update. `forgetting`, below 1, sets over how many samples the excitation is
+    /// measured and the samples are counted.
     pub fn advance(&mut self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) {
         let (x, v) = (o.penetration, o.rate);
         let map = [
@@ -77,18 +78,18 @@ impl Propagation {
             Impedance { stiffness: -gain.damping * x, damping: 1.0 - gain.damping * v },
         ];
         let [to_stiffness, to_damping] = map;
+        // Innovation times residual, the increment of the least-squares cost: between them lies the noise.
+        let square = innovation * innovation * (1.0 - x * gain.stiffness - v * gain.damping).abs();
         let next = Self {
             start: self.start,
             memory: map.map(|row| combine(row, self.memory)),
+            noise: congruence(map, self.noise).plus_outer(square, gain.stiffness, gain.damping),
             noise_gain: congruence(map, self.noise_gain).plus_outer(1.0, gain.stiffness, gain.damping),
             offset_gain: Impedance {
                 stiffness: dot(to_stiffness, self.offset_gain) + gain.stiffness,
                 damping: dot(to_damping, self.offset_gain) + gain.damping,
             },
             regressors: self.regressors.scaled(forgetting).plus_outer(1.0, x, v),
-            // Innovation times residual is the increment of the least-squares cost.
-            residual_energy: forgetting * self.residual_energy
-                + (innovation * innovation * (1.0 - x * gain.stiffness - v * gain.damping)).abs(),
             weight: forgetting * self.weight + 1.0,
         };
         if next.is_finite() {
@@ -98,10 +99,10 @@ impl Propagation {
 
     fn is_finite(&self) -> bool {
         self.memory.iter().all(|row| row.is_finite())
+            && self.noise.is_finite()
             && self.noise_gain.is_finite()
             && self.offset_gain.is_finite()
             && self.regressors.is_finite()
-            && self.residual_energy.is_finite()
     }
 
     /// The confidence in `estimate`, which the updates have led to.
@@ -110,12 +111,8 @@ impl Propagation {
         // The error at the start is told from a noisy estimate, over I - M: so is its remainder.
         let (k_told, b_told) = (1.0 / (1.0 - k.stiffness), 1.0 / (1.0 - b.damping));
         Confidence {
-            noise_variance: if self.weight > 0.0 { self.residual_energy / self.weight } else { 0.0 },
-            noise_gain: Sym2 {
-                xx: self.noise_gain.xx * k_told * k_told,
-                xv: self.noise_gain.xv * k_told * b_told,
-                vv: self.noise_gain.vv * b_told * b_told,
-            },
+            noise: self.noise.stretched(k_told, b_told),
+            noise_gain: self.noise_gain.stretched(k_told, b_told),
             remainder: self.remainder(estimate),
             offset_gain: self.offset_gain,
             samples: self.weight,

@@ -13,7 +13,7 @@ pub struct Sample {
     pub position: f32,
     /// Measured contact force, positive when the tool pushes [N or N m].
     pub force: f32,
-    /// Time since the sample before, above zero [s].
+    /// Time since the sample before, above zero, in seconds.
     pub elapsed: f32,
 }
 

@@ -144,19 +144,18 @@ impl Assessor {
         let c = &step.confidence;
         let stiffness = step.estimate.stiffness;
         let rounding = self.rounding.damping + stiffness * stiffness * self.rounding.stiffness;
-        let noise = larger(c.noise_variance * self.correlated_samples, rounding);
         let t = student(c.samples / self.correlated_samples - 2.0);
         let surface = stiffness.abs() * self.half_count;
-        let width = |gain: f32, remainder: f32, offset: f32| {
-            let variance = noise * gain;
+        let width = |noise: f32, gain: f32, remainder: f32, offset: f32| {
+            let variance = larger(noise * self.correlated_samples, rounding * gain);
             // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
             let deviation = if variance < 0.0 { 0.0 } else { sqrt(variance) };
             let width = t * deviation + remainder.abs() + offset.abs() * surface;
             if width.is_nan() { f32::INFINITY } else { width }
         };
         Impedance {
-            stiffness: width(c.noise_gain.xx, c.remainder.stiffness, c.offset_gain.stiffness),
-            damping: width(c.noise_gain.vv, c.remainder.damping, c.offset_gain.damping),
+            stiffness: width(c.noise.xx, c.noise_gain.xx, c.remainder.stiffness, c.offset_gain.stiffness),
+            damping: width(c.noise.vv, c.noise_gain.vv, c.remainder.damping, c.offset_gain.damping),
         }
     }
 }

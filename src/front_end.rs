@@ -24,11 +24,11 @@ pub enum Velocity {
 /// Settings of the front end, in SI.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrontEndConfig {
-    /// Nominal sample period [s].
+    /// Nominal sample period, in seconds.
     pub period: f32,
     /// Position at which contact begins [m or rad].
     pub surface: f32,
-    /// Cut-off of the low-pass [Hz], at most 0.4 over `period`.
+    /// Cut-off of the low-pass, in Hz, at most 0.4 over `period`.
     pub cutoff: f32,
     /// How the rate is had.
     pub velocity: Velocity,

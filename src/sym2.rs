@@ -38,6 +38,12 @@ impl Sym2 {
         Self { xx: self.xx * factor, xv: self.xv * factor, vv: self.vv * factor }
     }
 
+    /// `diag(x, v) * self * diag(x, v)`.
+    #[must_use]
+    pub fn stretched(self, x: f32, v: f32) -> Self {
+        Self { xx: self.xx * x * x, xv: self.xv * x * v, vv: self.vv * v * v }
+    }
+
     /// Determinant over the product of the diagonal, `1 - xv^2 / (xx vv)`: 1 for columns at right angles, 0 for columns
     /// along one line (or a column of zeros). Free of units. Formed from ratios, so nothing underflows.
     pub fn independence(self) -> f32 {

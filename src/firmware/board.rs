@@ -4,7 +4,7 @@ use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Config;
 
-/// Core clock of the image [Hz].
+/// Core clock of the image, in Hz.
 pub const CLOCK_HZ: u32 = 168_000_000;
 
 /// Ticks of the interrupt in a second.

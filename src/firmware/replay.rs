@@ -37,12 +37,10 @@ fn main() -> ! {
     let result = prepare().and_then(|(file, config)| {
         let bench = Bench::new(&config).map_err(|_| "the settings are out of range")?;
         TICK.insert(Tick { bench, input, output }).hand_over();
-        let timer = start_timer()?;
+        start_timer()?;
         let samples = Source { file, to_tick, ended: false };
         let records = Sink { file: create()?, from_tick, methods: config.methods, written: 0 };
-        let result = replay(samples, records);
-        drop(timer);
-        result
+        replay(samples, records)
     });
     match result {
         Ok(()) => semihosting::process::exit(0),
@@ -69,7 +67,7 @@ fn create() -> Result<File, Fault> {
     File::create(OUTPUT_FILE).map_err(|_| "cannot create replay.out in the folder it was run in")
 }
 
-fn start_timer() -> Result<cortex_m::peripheral::SYST, Fault> {
+fn start_timer() -> Result<(), Fault> {
     let machine = start_clock(pac::Peripherals::take().ok_or("the peripherals are taken")?);
     defmt::info!("replay on {=str}, {=u32} Hz", machine, CLOCK_HZ);
     let mut timer = cortex_m::Peripherals::take().ok_or("the core's peripherals are taken")?.SYST;
@@ -78,7 +76,7 @@ fn start_timer() -> Result<cortex_m::peripheral::SYST, Fault> {
     timer.clear_current();
     timer.enable_interrupt();
     timer.enable_counter();
-    Ok(timer)
+    Ok(())
 }
 
 /// Feeds and drains the interrupt until the recording is through.

@@ -94,7 +94,7 @@ fn method(name: &str) -> Result<Method, String> {
 }
 
 impl Options {
-    /// Cut-off in Hz where the recording allows it [Hz].
+    /// Cut-off in Hz where the recording allows it.
     const CUTOFF: f64 = 20.0;
 
     /// Label and value of each setting, for the reader of a report.
