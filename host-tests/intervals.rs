@@ -6,7 +6,7 @@
 
 use crate::rig;
 use crate::simulator::{Noise, Trial};
-use palpate::{Flags, Method, StreamConfig};
+use palpate::{Bench, BenchConfig, BlockConfig, Flags, Method, Sensors, StreamConfig};
 
 const SEEDS: u64 = 150;
 
@@ -28,12 +28,16 @@ impl Coverage {
 }
 
 fn measure(trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; 9] {
+    measure_with(&rig::settings(StreamConfig::BENCH), trial, truth, from)
+}
+
+fn measure_with(settings: &BenchConfig, trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; 9] {
     let mut coverage = [Coverage::default(); 9];
     let mut noise = Noise::new(77);
     for seed in 0..SEEDS {
         let surface = 1e-4 * (noise.uniform() - 0.5);
         let samples = Trial { surface, ..trial.clone() }.samples(1000 + seed);
-        let mut bench = rig::bench(StreamConfig::BENCH);
+        let mut bench = Bench::new(settings).expect("sound settings");
         for (k, sample) in samples.iter().enumerate() {
             let estimates = bench.update(*sample).expect("a good sample");
             if k < from || k % 150 != 0 {
@@ -122,6 +126,23 @@ fn settled_on_the_medium_bench() {
     report("settled, K 3000, B 6", &coverage);
     assert_covered(&coverage, &Method::ALL, &Demand { known: 1.0, widest: [2.0, 30.0] });
     assert_covered(&coverage, &SETTLED, &Demand { known: 1.0, widest: [0.03, 0.1] });
+}
+
+/// Fifty filtered samples are worth two independent ones, too few to measure the noise by.
+#[test]
+fn of_a_short_window_where_the_noise_is_known_and_where_it_is_not() {
+    let unknown = Sensors { force_noise: 0.0, ..StreamConfig::BENCH.sensors };
+    for (sensors, known) in [(StreamConfig::BENCH.sensors, 1.0), (unknown, 0.0)] {
+        let stream = StreamConfig { sensors, ..StreamConfig::BENCH };
+        let settings = BenchConfig { block: BlockConfig::of(50), ..rig::settings(stream) };
+        let coverage = measure_with(&settings, &soft(), [300.0, 5.0], SETTLED_FROM);
+        report("window 50, K 300, B 5", &coverage);
+        let bls = coverage[Method::Bls as usize];
+        assert_eq!([bls.claims[0], bls.claims[1]], [known * bls.looks; 2]);
+        if known > 0.0 {
+            assert_covered(&coverage, &[Method::Bls, Method::NewtonBlmf], &Demand { known, widest: [0.05, 0.1] });
+        }
+    }
 }
 
 #[test]

@@ -79,14 +79,15 @@ impl Estimate {
 pub struct Sensors {
     /// One count of the position sensor [m or rad].
     pub position_resolution: f32,
-    /// One count of the force sensor [N or N m].
-    pub force_resolution: f32,
+    /// Standard deviation of the force sensor's noise, its rounding included [N or N m]. Where it is given, a window too
+    /// short to measure it has intervals all the same.
+    pub force_noise: f32,
 }
 
 impl Sensors {
     pub(crate) fn check(self) -> Result<(), ConfigError> {
         require_not_negative(self.position_resolution, "sensors.position_resolution")?;
-        require_not_negative(self.force_resolution, "sensors.force_resolution")
+        require_not_negative(self.force_noise, "sensors.force_noise")
     }
 }
 
@@ -94,30 +95,36 @@ impl Sensors {
 ///
 /// The half-width is `t * sqrt(variance) + |remainder| + |offset_gain * K| * half a count of surface position`, with the
 /// parts of [`crate::Confidence`]. The residual is coloured by the filter, so n samples count as n over
-/// `correlated_samples`; t is Student's for that number less two; and the noise is never taken to be less than the
-/// rounding of both sensors. It covers noise, rounding, start-up and a misplaced surface, not the bias of a model or of
-/// [`crate::Velocity::Paper`].
+/// `correlated_samples`; t is Student's for that number less two, or for ten where the force noise is known beforehand; and
+/// the noise is never taken to be less than that of both sensors. It covers noise, rounding, start-up and a misplaced
+/// surface; not the bias of a model, of [`crate::Velocity::Paper`], or of a motion of angular frequency w sampled every T
+/// seconds, (w T)^2 / 12 of B.
 #[derive(Debug, Clone, Copy)]
 pub struct Assessor {
     units: crate::Units,
     correlated_samples: f32,
     half_count: f32,
-    rounding: Impedance,
+    position_variance: f32,
+    force_variance: f32,
 }
 
 impl Assessor {
     /// Share of the value above which an interval is flagged.
     const WIDE: f32 = 0.3;
 
+    /// Degrees of freedom that a force noise known beforehand is trusted for.
+    const KNOWN: f32 = 10.0;
+
     pub(crate) fn new(front_end: &FrontEnd, sensors: Sensors) -> Self {
         let units = front_end.config().units;
         let position = sensors.position_resolution / units.penetration;
-        let force = sensors.force_resolution / units.force;
+        let force = sensors.force_noise / units.force;
         Self {
             units,
             correlated_samples: front_end.correlated_samples(),
             half_count: 0.5 * position,
-            rounding: Impedance { stiffness: position * position / 12.0, damping: force * force / 12.0 },
+            position_variance: position * position / 12.0,
+            force_variance: force * force,
         }
     }
 
@@ -143,11 +150,12 @@ impl Assessor {
     fn half_width(&self, step: &Step) -> Impedance {
         let c = &step.confidence;
         let stiffness = step.estimate.stiffness;
-        let rounding = self.rounding.damping + stiffness * stiffness * self.rounding.stiffness;
-        let t = student(c.samples / self.correlated_samples - 2.0);
+        let known = self.force_variance + stiffness * stiffness * self.position_variance;
+        let measured = c.samples / self.correlated_samples - 2.0;
+        let t = student(if self.force_variance > 0.0 { larger(measured, Self::KNOWN) } else { measured });
         let surface = stiffness.abs() * self.half_count;
         let width = |noise: f32, gain: f32, remainder: f32, offset: f32| {
-            let variance = larger(noise * self.correlated_samples, rounding * gain);
+            let variance = larger(noise * self.correlated_samples, known * gain);
             // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
             let deviation = if variance < 0.0 { 0.0 } else { sqrt(variance) };
             let width = t * deviation + remainder.abs() + offset.abs() * surface;

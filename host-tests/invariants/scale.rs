@@ -24,7 +24,7 @@ fn stream(units: Units, length: f32, force: f32) -> StreamConfig {
         front_end: FrontEndConfig { units, gate, ..FrontEndConfig::BENCH },
         sensors: Sensors {
             position_resolution: bench.sensors.position_resolution * length,
-            force_resolution: bench.sensors.force_resolution * force,
+            force_noise: bench.sensors.force_noise * force,
         },
         ..bench
     }

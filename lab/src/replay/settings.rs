@@ -279,7 +279,7 @@ fn bench(front_end: FrontEndConfig, figures: &Figures, options: &Options) -> Ben
         front_end,
         sensors: Sensors {
             position_resolution: figures.position.resolution as f32,
-            force_resolution: figures.force.map_or(0.0, |force| force.resolution) as f32,
+            force_noise: figures.force.map_or(0.0, |force| force.noise) as f32,
         },
         contact_loss: match options.contact_loss {
             LossChoice::Everything => ContactLoss::Everything,
