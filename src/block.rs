@@ -3,8 +3,8 @@
 use crate::confidence::Confidence;
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_not_negative};
-use crate::estimate::Flags;
-use crate::law::Step;
+use crate::flags::Flags;
+use crate::law::{Law, Step};
 use crate::math::larger;
 use crate::sym2::Sym2;
 use crate::window::Recent;
@@ -61,7 +61,7 @@ pub struct BlockState {
 /// Sums over a window of regressors and of the misfit `e = F - phi' theta` of the present estimate. Taken about an
 /// estimate that is near, they lose less to rounding than sums of raw force.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Sums {
+pub struct Sums {
     pub samples: f32,
     pub regressors: Sym2,
     pub regressor: Impedance,
@@ -89,7 +89,7 @@ impl Sums {
 
 /// The least-squares solution of a window, as a move from the estimate that the sums were taken about.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Solution {
+pub struct Solution {
     pub correction: Impedance,
     pub inverse: Sym2,
     pub flags: Flags,
@@ -128,7 +128,7 @@ impl Solution {
 
 impl BlockState {
     /// Moves the estimate by `step`, or not at all where that would leave the finite numbers; what was done.
-    pub(crate) fn move_by(&mut self, step: Impedance) -> Impedance {
+    fn move_by(&mut self, step: Impedance) -> Impedance {
         let next = self.estimate.moved(1.0, step);
         if next.is_finite() {
             self.estimate = next;
@@ -139,47 +139,77 @@ impl BlockState {
     }
 }
 
-/// What an update did, beside the window's sums.
+/// What a law makes of the window's sums.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Taken {
-    /// The move of the estimate.
+pub struct Move {
+    /// How the estimate is to move.
     pub step: Impedance,
-    /// Newest force minus the prediction before the move.
-    pub innovation: f32,
     /// Variance per sample of the law's own criterion.
     pub noise_variance: f32,
     /// What was out of the ordinary.
     pub flags: Flags,
 }
 
-impl BlockConfig {
-    /// The outcome of an update that did `taken` where least squares would have moved by `solution.correction`.
-    pub(crate) fn step(&self, state: &BlockState, sums: &Sums, solution: &Solution, taken: Taken) -> Step {
+/// What one block law has of its own.
+pub trait Criterion {
+    /// The move from `estimate`, about which `sums` were taken, on a window that least squares would solve by `solution`.
+    fn advance(
+        &self,
+        config: &BlockConfig,
+        recent: Recent<'_>,
+        estimate: Impedance,
+        sums: &Sums,
+        solution: &Solution,
+    ) -> Move;
+}
+
+/// A law on a sliding window: what all of them share, about the criterion of each.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockLaw<C> {
+    pub(crate) config: BlockConfig,
+    pub(crate) criterion: C,
+}
+
+impl<C: Criterion> Law for BlockLaw<C> {
+    type State = BlockState;
+
+    fn start(&self) -> BlockState {
+        BlockState::default()
+    }
+
+    /// The window is all the memory there is, and whoever holds it clears it.
+    fn forget(&self, _: &mut BlockState) {}
+
+    fn window(&self) -> usize {
+        usize::from(self.config.window)
+    }
+
+    fn update(&self, state: &mut BlockState, recent: Recent<'_>) -> Step {
+        let recent = recent.last(self.window());
+        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
+        let fill = recent.len() as f32 / f32::from(self.config.window);
+        if recent.len() < usize::from(self.config.minimum_fill) {
+            let (confidence, excitation, flags) = (Confidence::NONE, 0.0, Flags::TOO_FEW);
+            return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
+        }
+        let sums = Sums::over(recent, state.estimate);
+        let solution = Solution::of(&sums, &self.config);
+        let Move { step, noise_variance, flags } =
+            self.criterion.advance(&self.config, recent, state.estimate, &sums, &solution);
+        let taken = state.move_by(step);
         Step {
             estimate: state.estimate,
-            innovation: taken.innovation,
+            innovation,
             confidence: Confidence {
-                noise: solution.inverse.scaled(taken.noise_variance),
+                noise: solution.inverse.scaled(noise_variance),
                 noise_gain: solution.inverse,
-                remainder: solution.correction.moved(-1.0, taken.step),
+                remainder: solution.correction.moved(-1.0, taken),
                 offset_gain: solution.inverse.times(sums.regressor),
                 samples: sums.samples,
             },
-            fill: sums.samples / f32::from(self.window),
+            fill,
             excitation: sums.regressors.independence(),
-            flags: taken.flags,
-        }
-    }
-
-    /// The outcome where the window has not enough samples yet.
-    pub(crate) fn too_few(&self, state: &BlockState, recent: Recent<'_>) -> Step {
-        Step {
-            estimate: state.estimate,
-            innovation: recent.newest().unwrap_or_default().misfit(state.estimate),
-            confidence: Confidence::NONE,
-            fill: recent.len() as f32 / f32::from(self.window),
-            excitation: 0.0,
-            flags: Flags::TOO_FEW,
+            flags,
         }
     }
 }

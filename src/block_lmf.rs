@@ -1,11 +1,10 @@
 //! Block least mean fourth (BLMF): one exact line search of `sum e^4` a sample.
 
-use crate::block::{BlockConfig, BlockState, Solution, Sums, Taken};
+use crate::block::{BlockConfig, BlockLaw, Criterion, Move, Solution, Sums};
 use crate::contact::Impedance;
 use crate::cubic::depressed_root;
 use crate::error::ConfigError;
-use crate::estimate::Flags;
-use crate::law::{Law, Step};
+use crate::flags::Flags;
 use crate::math::{larger, sqrt};
 use crate::sym2::Sym2;
 use crate::window::Recent;
@@ -32,9 +31,11 @@ pub enum Direction {
 /// the distance to the least-squares solution of the window, towards which an unfinished descent still has to go. Mean
 /// fourth is no friend of outliers: its standard deviation against least squares is 1.3 for Gaussian noise, 0.65 for
 /// uniform noise, and 13 for spikes.
+pub type BlockLeastMeanFourth = BlockLaw<LeastMeanFourth>;
+
+/// `sum (F - phi' theta)^4`, descended by one exact line search a sample.
 #[derive(Debug, Clone, Copy)]
-pub struct BlockLeastMeanFourth {
-    config: BlockConfig,
+pub struct LeastMeanFourth {
     direction: Direction,
 }
 
@@ -58,6 +59,7 @@ pub struct LineSearch {
 /// Sums of the misfit's third power and of what weighs it, misfits over the largest.
 #[derive(Debug, Clone, Copy, Default)]
 struct Powers {
+    largest: f32,
     descent: Impedance,
     hessian: Sym2,
     square: f32,
@@ -66,70 +68,68 @@ struct Powers {
 }
 
 impl BlockLeastMeanFourth {
-    /// Below this scaled `sum p^4` no observation says anything along the direction.
-    const FLAT: f32 = 1e-22;
-
     /// Checks the settings.
     ///
     /// # Errors
     /// The first field that is out of range.
     pub fn new(config: BlockConfig, direction: Direction) -> Result<Self, ConfigError> {
-        Ok(Self { config: config.check()?, direction })
+        Ok(Self { config: config.check()?, criterion: LeastMeanFourth { direction } })
     }
 
     /// The line search from `estimate` over `recent`; `None` where the gradient is zero or nothing is excited.
     pub fn line_search(&self, recent: Recent<'_>, estimate: Impedance) -> Option<LineSearch> {
         let sums = Sums::over(recent, estimate);
         let powers = Powers::over(recent, estimate, sums.largest_misfit)?;
-        let held = Solution::of(&sums, &self.config).flags.contains(Flags::DAMPING_HELD);
-        self.search(recent, estimate, sums.largest_misfit, &powers, held)
+        let solution = Solution::of(&sums, &self.config);
+        let direction = self.criterion.unit_direction(&self.config, &powers, &solution)?;
+        search(recent, estimate, &powers, direction)
     }
+}
 
-    fn search(
-        &self,
-        recent: Recent<'_>,
-        estimate: Impedance,
-        largest: f32,
-        powers: &Powers,
-        held: bool,
-    ) -> Option<LineSearch> {
-        let u = self.unit_direction(powers, held)?;
-        let reach = u.stiffness.abs() * powers.reach.stiffness + u.damping.abs() * powers.reach.damping;
-        let (to_p, to_e) = (1.0 / reach, 1.0 / largest);
-        let (mut a, mut b3, mut c3, mut d1) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
-        recent.for_each(|o| {
-            let p = o.predicted_by(u) * to_p;
-            let e = o.misfit(estimate) * to_e;
-            let (pp, pe) = (p * p, p * e);
-            a += pp * pp;
-            b3 += pp * pe;
-            c3 += pe * pe;
-            d1 += pe * e * e;
-        });
-        if a.is_nan() || a <= Self::FLAT {
-            return None;
-        }
-        let centre = b3 / a;
-        let (mut spread, mut skew) = (0.0_f32, 0.0_f32);
-        recent.for_each(|o| {
-            let p = o.predicted_by(u) * to_p;
-            let e = o.misfit(estimate) * to_e - centre * p;
-            let pe = p * e;
-            spread += pe * pe;
-            skew += pe * e * e;
-        });
-        let root = centre + depressed_root(spread / a, -skew / a)?;
-        let length = root * (largest / reach);
-        length.is_finite().then_some(LineSearch { direction: u, a, b: -3.0 * b3, c: 3.0 * c3, d: -d1, length })
+/// Below this scaled `sum p^4` no observation says anything along the direction.
+const FLAT: f32 = 1e-22;
+
+/// The exact line search along the unit vector `u`; `None` where nothing is excited along it.
+fn search(recent: Recent<'_>, estimate: Impedance, powers: &Powers, u: Impedance) -> Option<LineSearch> {
+    let reach = u.stiffness.abs() * powers.reach.stiffness + u.damping.abs() * powers.reach.damping;
+    let (to_p, to_e) = (1.0 / reach, 1.0 / powers.largest);
+    let (mut a, mut b3, mut c3, mut d1) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
+    recent.for_each(|o| {
+        let p = o.predicted_by(u) * to_p;
+        let e = o.misfit(estimate) * to_e;
+        let (pp, pe) = (p * p, p * e);
+        a += pp * pp;
+        b3 += pp * pe;
+        c3 += pe * pe;
+        d1 += pe * e * e;
+    });
+    if a.is_nan() || a <= FLAT {
+        return None;
     }
+    let centre = b3 / a;
+    let (mut spread, mut skew) = (0.0_f32, 0.0_f32);
+    recent.for_each(|o| {
+        let p = o.predicted_by(u) * to_p;
+        let e = o.misfit(estimate) * to_e - centre * p;
+        let pe = p * e;
+        spread += pe * pe;
+        skew += pe * e * e;
+    });
+    let root = centre + depressed_root(spread / a, -skew / a)?;
+    let length = root * (powers.largest / reach);
+    length.is_finite().then_some(LineSearch { direction: u, a, b: -3.0 * b3, c: 3.0 * c3, d: -d1, length })
+}
 
-    /// Along `held`, where B cannot be told, Newton's direction is that of K alone.
-    fn unit_direction(&self, powers: &Powers, held: bool) -> Option<Impedance> {
+impl LeastMeanFourth {
+    /// Where B cannot be told, Newton's direction is that of K alone.
+    fn unit_direction(&self, config: &BlockConfig, powers: &Powers, solution: &Solution) -> Option<Impedance> {
         let descent = powers.descent;
         let newton = match self.direction {
             Direction::SteepestDescent => None,
-            Direction::Newton if held => Some(Impedance { damping: 0.0, ..descent }),
-            Direction::Newton => powers.hessian.solve(descent, self.config.independence_floor),
+            Direction::Newton if solution.flags.contains(Flags::DAMPING_HELD) => {
+                Some(Impedance { damping: 0.0, ..descent })
+            }
+            Direction::Newton => powers.hessian.solve(descent, config.independence_floor),
         };
         let d = newton.filter(|d| d.is_finite()).unwrap_or(descent);
         let largest = larger(d.stiffness.abs(), d.damping.abs());
@@ -142,12 +142,28 @@ impl BlockLeastMeanFourth {
     }
 }
 
-impl BlockLeastMeanFourth {
-    /// A steepest descent moves both along its gradient, whatever least squares could have solved for.
-    fn flags(&self, solution: &Solution) -> Flags {
-        match self.direction {
-            Direction::SteepestDescent => solution.flags & Flags::HELD,
-            Direction::Newton => solution.flags,
+impl Criterion for LeastMeanFourth {
+    fn advance(
+        &self,
+        config: &BlockConfig,
+        recent: Recent<'_>,
+        estimate: Impedance,
+        sums: &Sums,
+        solution: &Solution,
+    ) -> Move {
+        let powers = Powers::over(recent, estimate, sums.largest_misfit);
+        let search = powers.and_then(|powers| {
+            let direction = self.unit_direction(config, &powers, solution)?;
+            search(recent, estimate, &powers, direction)
+        });
+        Move {
+            step: search.map_or(Impedance::ZERO, |s| Impedance::ZERO.moved(s.length, s.direction)),
+            noise_variance: powers.map_or(0.0, |powers| powers.noise_variance(sums.samples)),
+            flags: match self.direction {
+                // It moves both along its gradient, whatever least squares could have solved for.
+                Direction::SteepestDescent => solution.flags & Flags::HELD,
+                Direction::Newton => solution.flags,
+            },
         }
     }
 }
@@ -159,7 +175,7 @@ impl Powers {
         if !scale.is_finite() || largest <= 0.0 {
             return None;
         }
-        let mut s = Self::default();
+        let mut s = Self { largest, ..Self::default() };
         recent.for_each(|o| {
             let (x, v, e) = (o.penetration, o.rate, o.misfit(estimate) * scale);
             let square = e * e;
@@ -176,42 +192,7 @@ impl Powers {
     }
 
     /// `E e^6 / (9 (E e^2)^2)`, in squared internal units of force.
-    fn noise_variance(&self, samples: f32, largest: f32) -> f32 {
-        self.sixth * samples / (9.0 * self.square * self.square) * largest * largest
-    }
-}
-
-impl Law for BlockLeastMeanFourth {
-    type State = BlockState;
-
-    fn start(&self) -> BlockState {
-        BlockState::default()
-    }
-
-    fn forget(&self, _: &mut BlockState) {}
-
-    fn window(&self) -> usize {
-        usize::from(self.config.window)
-    }
-
-    fn update(&self, state: &mut BlockState, recent: Recent<'_>) -> Step {
-        let recent = recent.last(self.window());
-        if recent.len() < usize::from(self.config.minimum_fill) {
-            return self.config.too_few(state, recent);
-        }
-        let sums = Sums::over(recent, state.estimate);
-        let solution = Solution::of(&sums, &self.config);
-        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
-        let powers = Powers::over(recent, state.estimate, sums.largest_misfit);
-        let held = solution.flags.contains(Flags::DAMPING_HELD);
-        let search = powers.and_then(|p| self.search(recent, state.estimate, sums.largest_misfit, &p, held));
-        let step = search.map_or(Impedance::ZERO, |s| Impedance::ZERO.moved(s.length, s.direction));
-        let taken = Taken {
-            step: state.move_by(step),
-            innovation,
-            noise_variance: powers.map_or(0.0, |p| p.noise_variance(sums.samples, sums.largest_misfit)),
-            flags: self.flags(&solution),
-        };
-        self.config.step(state, &sums, &solution, taken)
+    fn noise_variance(&self, samples: f32) -> f32 {
+        self.sixth * samples / (9.0 * self.square * self.square) * self.largest * self.largest
     }
 }

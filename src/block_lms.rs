@@ -1,10 +1,9 @@
 //! Block least mean square (BLMS): one step of steepest descent a sample, with the closed-form step size.
 
-use crate::block::{BlockConfig, BlockState, Solution, Sums, Taken};
+use crate::block::{BlockConfig, BlockLaw, Criterion, Move, Solution, Sums};
 use crate::contact::Impedance;
 use crate::error::ConfigError;
-use crate::estimate::Flags;
-use crate::law::{Law, Step};
+use crate::flags::Flags;
 use crate::math::larger;
 use crate::window::Recent;
 
@@ -12,10 +11,11 @@ use crate::window::Recent;
 /// window: `step = sum p e / sum p^2` with `p = phi'u`.
 ///
 /// Without the length of g, and in one pass, that is `theta += (d'd / d'Rd) d` with `d = sum phi e`, `R = sum phi phi'`.
+pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare>;
+
+/// `sum (F - phi' theta)^2`, descended by one step a sample.
 #[derive(Debug, Clone, Copy)]
-pub struct BlockLeastMeanSquare {
-    config: BlockConfig,
-}
+pub struct LeastMeanSquare;
 
 impl BlockLeastMeanSquare {
     /// Checks the settings.
@@ -23,7 +23,18 @@ impl BlockLeastMeanSquare {
     /// # Errors
     /// The first field that is out of range.
     pub fn new(config: BlockConfig) -> Result<Self, ConfigError> {
-        Ok(Self { config: config.check()? })
+        Ok(Self { config: config.check()?, criterion: LeastMeanSquare })
+    }
+}
+
+impl Criterion for LeastMeanSquare {
+    fn advance(&self, _: &BlockConfig, _: Recent<'_>, _: Impedance, sums: &Sums, solution: &Solution) -> Move {
+        Move {
+            step: steepest_step(sums),
+            noise_variance: solution.residual_variance(sums),
+            // A descent moves both along its gradient, whatever least squares could have solved for.
+            flags: solution.flags & Flags::HELD,
+        }
     }
 }
 
@@ -39,35 +50,4 @@ fn steepest_step(sums: &Sums) -> Impedance {
     let length = (d.stiffness * stiffness + d.damping * damping) / curvature;
     let step = Impedance::ZERO.moved(length, d);
     if step.is_finite() { step } else { Impedance::ZERO }
-}
-
-impl Law for BlockLeastMeanSquare {
-    type State = BlockState;
-
-    fn start(&self) -> BlockState {
-        BlockState::default()
-    }
-
-    fn forget(&self, _: &mut BlockState) {}
-
-    fn window(&self) -> usize {
-        usize::from(self.config.window)
-    }
-
-    fn update(&self, state: &mut BlockState, recent: Recent<'_>) -> Step {
-        let recent = recent.last(self.window());
-        if recent.len() < usize::from(self.config.minimum_fill) {
-            return self.config.too_few(state, recent);
-        }
-        let sums = Sums::over(recent, state.estimate);
-        let solution = Solution::of(&sums, &self.config);
-        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
-        let taken = Taken {
-            step: state.move_by(steepest_step(&sums)),
-            innovation,
-            noise_variance: solution.residual_variance(&sums),
-            flags: solution.flags & Flags::HELD,
-        };
-        self.config.step(state, &sums, &solution, taken)
-    }
 }

@@ -2,9 +2,9 @@
 
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require};
-use crate::estimate::Flags;
+use crate::flags::Flags;
 use crate::law::{Law, Step};
-use crate::recursive::{RecursiveState, check_initial_covariance};
+use crate::recursive::{RecursiveState, check_covariance};
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -54,12 +54,7 @@ impl Ewrls {
     pub fn new(config: EwrlsConfig) -> Result<Self, ConfigError> {
         let lambda = config.forgetting_factor;
         require(lambda > 0.5 && lambda <= 1.0, "forgetting_factor", "above 0.5 and at most 1")?;
-        check_initial_covariance(config.initial_covariance)?;
-        require(
-            config.covariance_limit >= config.initial_covariance && config.covariance_limit <= 1e9,
-            "covariance_limit",
-            "at least initial_covariance and at most 1e9",
-        )?;
+        check_covariance(config.initial_covariance, config.covariance_limit)?;
         Ok(Self { config })
     }
 }

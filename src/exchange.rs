@@ -6,7 +6,8 @@
 
 use crate::bench::{BenchConfig, BenchEstimates, Method, Methods};
 use crate::contact::{Impedance, Sample};
-use crate::estimate::{Estimate, Flags};
+use crate::estimate::Estimate;
+use crate::flags::Flags;
 use crate::front_end::{Field, Rejection};
 
 /// The file that the image reads, in the folder it is run in.

@@ -3,7 +3,7 @@
 use crate::confidence::Propagation;
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require_positive};
-use crate::estimate::Flags;
+use crate::flags::Flags;
 use crate::law::{Law, Step};
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};

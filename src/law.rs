@@ -2,7 +2,7 @@
 
 use crate::confidence::Confidence;
 use crate::contact::Impedance;
-use crate::estimate::Flags;
+use crate::flags::Flags;
 use crate::window::Recent;
 
 /// An estimation law. The implementor is the checked configuration; what it has learnt is in `State`.

@@ -4,7 +4,7 @@ use crate::confidence::Propagation;
 use crate::contact::{Impedance, Observation};
 use crate::covariance::Covariance;
 use crate::error::{ConfigError, require, require_positive};
-use crate::estimate::Flags;
+use crate::flags::Flags;
 use crate::law::Step;
 use crate::math::smaller;
 
@@ -60,6 +60,12 @@ impl RecursiveState {
             flags: Flags::empty(),
         }
     }
+}
+
+/// Checks a covariance that may grow up to `limit`.
+pub(crate) fn check_covariance(initial: f32, limit: f32) -> Result<(), ConfigError> {
+    check_initial_covariance(initial)?;
+    require(limit >= initial && limit <= 1e9, "covariance_limit", "at least initial_covariance and at most 1e9")
 }
 
 pub(crate) fn check_initial_covariance(value: f32) -> Result<(), ConfigError> {

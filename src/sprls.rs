@@ -1,11 +1,11 @@
 //! Self-perturbing recursive least squares (SPRLS).
 
 use crate::contact::Impedance;
-use crate::error::{ConfigError, require, require_not_negative};
-use crate::estimate::Flags;
+use crate::error::{ConfigError, require_not_negative};
+use crate::flags::Flags;
 use crate::law::{Law, Step};
 use crate::math::smaller;
-use crate::recursive::{RecursiveState, check_initial_covariance};
+use crate::recursive::{RecursiveState, check_covariance};
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -67,12 +67,7 @@ impl Sprls {
     pub fn new(config: SprlsConfig) -> Result<Self, ConfigError> {
         require_not_negative(config.perturbation_gain, "perturbation_gain")?;
         require_not_negative(config.perturbation_sensitivity, "perturbation_sensitivity")?;
-        check_initial_covariance(config.initial_covariance)?;
-        require(
-            config.covariance_limit >= config.initial_covariance && config.covariance_limit <= 1e9,
-            "covariance_limit",
-            "at least initial_covariance and at most 1e9",
-        )?;
+        check_covariance(config.initial_covariance, config.covariance_limit)?;
         Ok(Self { config })
     }
 

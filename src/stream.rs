@@ -2,7 +2,8 @@
 
 use crate::contact::Sample;
 use crate::error::ConfigError;
-use crate::estimate::{Assessor, Estimate, Flags, Sensors};
+use crate::estimate::{Assessor, Estimate, Sensors};
+use crate::flags::Flags;
 use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection};
 use crate::law::Law;
 use crate::math::{larger, smaller};
