@@ -13,10 +13,11 @@ use serde::{Deserialize, Serialize};
 /// Along which direction a sample's line search goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Direction {
-    /// `u = -g/|g|`, `g = -sum phi e^3` (the paper). Needs 80 to 400 steps where K and B differ as they do.
+    /// `u = -g/|g|`, `g = -sum phi e^3` (the paper). On a window of the bench it needs 63 steps from zero to within 2 %
+    /// of the minimum.
     #[default]
     SteepestDescent,
-    /// `u` along `(sum phi phi' e^2)^-1 sum phi e^3`: one step to 2 %.
+    /// `u` along `(sum phi phi' e^2)^-1 sum phi e^3`: one step for the same.
     Newton,
 }
 
@@ -29,8 +30,8 @@ pub enum Direction {
 ///
 /// The interval is that of least mean fourth at its minimum, `E e^6 / (9 (E e^2)^2)` in place of the variance, widened by
 /// the distance to the least-squares solution of the window, towards which an unfinished descent still has to go. Mean
-/// fourth is no friend of outliers: its standard deviation against least squares is 1.3 for Gaussian noise, 0.65 for
-/// uniform noise, and 13 for spikes.
+/// fourth is no friend of outliers: its standard deviation of K over that of least squares is 1.27 for Gaussian noise, 0.67
+/// for uniform noise, and 18 where one sample in 200 is a spike of 3 N (`host-tests/fourth.rs` measures these figures).
 pub type BlockLeastMeanFourth = BlockLaw<LeastMeanFourth>;
 
 /// `sum (F - phi' theta)^4`, descended by one exact line search a sample.
@@ -39,7 +40,7 @@ pub struct LeastMeanFourth {
     direction: Direction,
 }
 
-/// The coefficients of one line search, for misfits over `misfit_scale` and regressors over `regressor_scale`.
+/// The coefficients of one line search, for misfits over their largest and p over its bound on the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineSearch {
     /// Unit vector of the search.

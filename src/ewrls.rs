@@ -15,8 +15,8 @@ pub struct EwrlsConfig {
     pub forgetting_factor: f32,
     /// P(0) = `initial_covariance` * I, above 0, at most 1e8, internal units.
     pub initial_covariance: f32,
-    /// Bound of the covariance: while nothing moves, forgetting alone would let it grow without end (non-finite after
-    /// 16 to 26 s of a held contact at 0.9967). At least `initial_covariance`, at most 1e9.
+    /// Bound of the covariance: while nothing moves, forgetting alone would let it grow without end (past the
+    /// range of a single after 26 s of a held contact at 0.9967). At least `initial_covariance`, at most 1e9.
     pub covariance_limit: f32,
 }
 

@@ -3,7 +3,7 @@
 use palpate::exchange::Outcome;
 use palpate::{Estimate, Flags, Method, Rejection, Sample};
 
-use super::settings::Plan;
+use super::plan::Plan;
 use crate::page;
 
 /// Every estimate of every method that ran.

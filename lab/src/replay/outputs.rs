@@ -1,0 +1,91 @@
+//! The files that a replay leaves behind.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result};
+
+use super::{Options, Place, Replayed, estimates};
+use crate::error::InputError;
+use crate::outfile::OutFile;
+use crate::page::{Page, Trial, Units};
+use crate::rig::{Coordinate, Rig};
+
+/// The output files, opened before the work so that a place that cannot be written shows at once.
+pub struct Outputs {
+    estimates: Vec<OutFile>,
+    page: OutFile,
+}
+
+impl Outputs {
+    /// Makes the folders and opens the files: `estimates.csv` in `folder` itself for one trial, in a folder each for
+    /// several, and `replay.html`.
+    ///
+    /// # Errors
+    /// The place cannot be written.
+    pub fn open(folder: &Path, trials: &[PathBuf]) -> Result<Self> {
+        let make = |folder: &Path| {
+            let what = || InputError::new(folder.display(), "a folder that cannot be made", "a writable place");
+            std::fs::create_dir_all(folder).with_context(what)
+        };
+        make(folder)?;
+        let mut estimates = Vec::new();
+        for (k, trial) in trials.iter().enumerate() {
+            let place = match trials.len() {
+                1 => folder.to_path_buf(),
+                // The number keeps trials of one name in different folders apart.
+                _ => folder.join(format!("{:02}-{}", k + 1, trial.file_stem().unwrap_or_default().display())),
+            };
+            make(&place)?;
+            estimates.push(OutFile::create(&place.join("estimates.csv"))?);
+        }
+        Ok(Self { estimates, page: OutFile::create(&folder.join("replay.html"))? })
+    }
+
+    /// Writes what was replayed, whole or not at all.
+    ///
+    /// # Errors
+    /// The place cannot be written any more.
+    pub fn write(mut self, rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Result<()> {
+        for (file, replayed) in self.estimates.into_iter().zip(replayed) {
+            estimates::write(file, rig.coordinate, replayed)?;
+        }
+        page(rig, replayed, options, place).write(&mut self.page).map_err(|error| self.page.fault(&error))?;
+        Ok(self.page.commit()?)
+    }
+}
+
+fn page(rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Page {
+    let (stiffness, damping) = rig.contact.map_or((f64::NAN, f64::NAN), |c| (c.stiffness, c.damping));
+    Page {
+        rig: rig.name.clone(),
+        ran_on: match place {
+            Place::Host => "host".to_owned(),
+            Place::Qemu => "Cortex-M4F under QEMU".to_owned(),
+        },
+        settings: options.in_words(),
+        trials: replayed
+            .iter()
+            .map(|r| Trial {
+                name: r.recording.name.clone(),
+                units: units(rig.coordinate),
+                nominal_stiffness: stiffness,
+                nominal_damping: damping,
+                time: r.recording.time.clone(),
+                penetration: r.plan.samples.iter().map(|sample| sample.position).collect(),
+                force: r.plan.samples.iter().map(|sample| sample.force).collect(),
+                contact: r.trace.contact(),
+                methods: r.trace.methods(&r.plan.samples),
+                notices: r.notices(),
+            })
+            .collect(),
+    }
+}
+
+fn units(coordinate: Coordinate) -> Units {
+    Units {
+        position: coordinate.position_unit(),
+        force: coordinate.force_unit(),
+        stiffness: coordinate.stiffness_unit(),
+        damping: coordinate.damping_unit(),
+    }
+}
