@@ -34,18 +34,25 @@ impl Device {
         Ok(Self { qemu: tools::qemu(leave)?, image: build("replay")? })
     }
 
-    /// Feeds `samples` to the image and hands each outcome to `take`, in order. The time is the emulator's own: it sleeps
-    /// through what the core sleeps.
+    /// Feeds `samples` to the image and hands each outcome to `take`, in order; `progress` is told meanwhile how many are
+    /// done. The time is the emulator's own: it sleeps through what the core sleeps.
     ///
     /// # Errors
     /// The image or the emulator fails, or returns something else than one record a sample.
-    pub fn run(&self, config: &BenchConfig, samples: &[Sample], mut take: impl FnMut(Outcome)) -> Result<Counters> {
+    pub fn run(
+        &self,
+        config: &BenchConfig,
+        samples: &[Sample],
+        progress: impl Fn(u64),
+        mut take: impl FnMut(Outcome),
+    ) -> Result<Counters> {
         let folder = tempfile::tempdir().context("cannot make a folder for the image's files")?;
         write_input(&folder.path().join("replay.in"), config, samples).context("cannot write the image's input")?;
         let output = folder.path().join("replay.out");
-        self.emulate(folder.path(), &output)?;
+        let size = record_bytes(config.methods);
+        self.emulate(folder.path(), &output, |written| progress(written / size as u64))?;
         let mut records = BufReader::new(File::open(&output).context("the image wrote no output")?);
-        let mut bytes = vec![0; record_bytes(config.methods)];
+        let mut bytes = vec![0; size];
         for k in 0..samples.len() {
             records.read_exact(&mut bytes).with_context(|| format!("the image's output ends at sample {k}"))?;
             let outcome = decode_record(&bytes, config.methods);
@@ -57,7 +64,7 @@ impl Device {
         decode_counters(&counters).context("the image's counters are none")
     }
 
-    fn emulate(&self, folder: &Path, output: &Path) -> Result<()> {
+    fn emulate(&self, folder: &Path, output: &Path, grown: impl Fn(u64)) -> Result<()> {
         let image = self.image.canonicalize().with_context(|| format!("{} is gone", self.image.display()))?;
         let mut child = Command::new(&self.qemu)
             .args(["-machine", "netduinoplus2", "-display", "none", "-monitor", "none", "-serial", "none"])
@@ -71,7 +78,7 @@ impl Device {
             .stderr(Stdio::piped())
             .spawn()
             .with_context(|| format!("cannot run {}", self.qemu.display()))?;
-        let done = wait(&mut child, output);
+        let done = wait(&mut child, output, grown);
         if done.is_err() {
             // Killing fails only where it has ended by itself.
             let _ = child.kill();
@@ -84,13 +91,14 @@ impl Device {
     }
 }
 
-/// Waits for the emulator as long as its output grows.
-fn wait(child: &mut Child, output: &Path) -> Result<()> {
+/// Waits for the emulator as long as its output grows; `grown` is told its size.
+fn wait(child: &mut Child, output: &Path, grown: impl Fn(u64)) -> Result<()> {
     let (mut size, mut since) = (0, Instant::now());
     while child.try_wait().context("the emulator cannot be waited for")?.is_none() {
         let now = std::fs::metadata(output).map_or(0, |file| file.len());
         if now > size {
             (size, since) = (now, Instant::now());
+            grown(size);
         }
         if since.elapsed() > PATIENCE {
             bail!("the image wrote nothing for {} s", PATIENCE.as_secs());

@@ -113,10 +113,7 @@ pub fn replay(
     let plan = Plan::new(rig, rig_path, &recording, options)?;
     let mut trace = Trace::new(&plan.methods, plan.samples.len());
     let bar = progress(&recording.name, plan.samples.len());
-    runner.run(&plan.config, &plan.samples, |outcome| {
-        trace.take(outcome);
-        bar.inc(1);
-    })?;
+    runner.run(&plan.config, &plan.samples, |done| bar.set_position(done), |outcome| trace.take(outcome))?;
     bar.finish_and_clear();
     Ok(Replayed { recording, plan, trace })
 }
@@ -130,6 +127,9 @@ pub enum Runner {
 }
 
 impl Runner {
+    /// Samples between two words of progress.
+    const BLOCK: usize = 4096;
+
     /// Sets up what the place needs.
     ///
     /// # Errors
@@ -141,18 +141,27 @@ impl Runner {
         })
     }
 
-    /// Hands the outcome of each sample to `take`, in order.
+    /// Hands the outcome of each sample to `take`, in order; `progress` is told from time to time how many are done.
     ///
     /// # Errors
     /// The settings are out of range, or the device fails.
-    pub fn run(&self, config: &BenchConfig, samples: &[Sample], mut take: impl FnMut(Outcome)) -> Result<()> {
+    pub fn run(
+        &self,
+        config: &BenchConfig,
+        samples: &[Sample],
+        progress: impl Fn(u64),
+        mut take: impl FnMut(Outcome),
+    ) -> Result<()> {
         match self {
             Self::Host => {
                 let mut bench = Bench::new(config)?;
-                samples.iter().for_each(|&sample| take(bench.update(sample)));
+                for (done, block) in samples.chunks(Self::BLOCK).enumerate() {
+                    progress((done * Self::BLOCK) as u64);
+                    block.iter().for_each(|&sample| take(bench.update(sample)));
+                }
             }
             Self::Device(device) => {
-                device.run(config, samples, take)?;
+                device.run(config, samples, progress, take)?;
             }
         }
         Ok(())

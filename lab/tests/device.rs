@@ -53,10 +53,15 @@ fn compare(device: &Device, what: &str, config: &BenchConfig, samples: &[Sample]
     let host: Vec<Outcome> = samples.iter().map(|&sample| bench.update(sample)).collect();
     let mut returned = 0;
     let counters = device
-        .run(config, samples, |outcome| {
-            assert_same(what, returned, &host[returned], &outcome);
-            returned += 1;
-        })
+        .run(
+            config,
+            samples,
+            |_| (),
+            |outcome| {
+                assert_same(what, returned, &host[returned], &outcome);
+                returned += 1;
+            },
+        )
         .unwrap_or_else(|error| panic!("{what}: {error:#}"));
     assert_eq!(returned, samples.len(), "{what}");
     assert_eq!(counters.samples as usize, samples.len(), "{what}: the interrupt took every sample once");
@@ -188,6 +193,6 @@ fn an_empty_recording_and_a_single_sample_come_back() {
 fn settings_out_of_range_are_refused_by_the_image_and_told() {
     let Some(device) = device() else { return };
     let config = BenchConfig { block: BlockConfig::of(5000), ..every_estimator(StreamConfig::BENCH) };
-    let error = device.run(&config, &[], |_| ()).expect_err("a window of 5000 samples");
+    let error = device.run(&config, &[], |_| (), |_| ()).expect_err("a window of 5000 samples");
     assert!(format!("{error:#}").contains("the settings are out of range"), "{error:#}");
 }
