@@ -135,7 +135,7 @@ pub fn project() -> Result<PathBuf> {
 fn build(name: &str) -> Result<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
-        .args(["build", "--release", "--quiet", "--package", "palpate", "--bin", name, "--target", tools::TARGET])
+        .args(["build", "--release", "--quiet", "--package", "palpate", "--example", name, "--target", tools::TARGET])
         .args(["--message-format", "json-render-diagnostics"])
         .current_dir(project()?)
         // These replace the flags of .cargo/config.toml, the link script among them.
