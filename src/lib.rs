@@ -99,3 +99,8 @@ pub use stream::{ContactLoss, Event, Stream, StreamConfig, Tracker};
 pub use sym2::Sym2;
 pub use units::Units;
 pub use window::{Recent, Window};
+
+/// The README's example is a test, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

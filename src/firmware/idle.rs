@@ -1,5 +1,7 @@
 //! The idle loop of the bench image: files in and out by semihosting, the work itself in the interrupt.
 
+use core::mem::MaybeUninit;
+
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::entry;
 use defmt_rtt as _;
@@ -30,13 +32,14 @@ type Fault = &'static str;
 fn main() -> ! {
     static mut INPUT: Queue<Sample, QUEUE> = Queue::new();
     static mut OUTPUT: Queue<Outcome, OUTCOMES> = Queue::new();
-    static mut TICK: Option<Tick> = None;
+    // Not an `Option`: its `None` is no zero, and 25 kB of it would stand in the flash.
+    static mut TICK: MaybeUninit<Tick> = MaybeUninit::uninit();
 
     let (to_tick, input) = INPUT.split();
     let (output, from_tick) = OUTPUT.split();
     let result = prepare().and_then(|(file, config)| {
         let bench = Bench::new(&config).map_err(|_| "the settings are out of range")?;
-        TICK.insert(Tick { bench, input, output }).hand_over();
+        TICK.write(Tick { bench, input, output }).hand_over();
         start_timer()?;
         let samples = Source { file, to_tick, ended: false };
         let records = Sink { file: create()?, from_tick, methods: config.methods, written: 0 };
