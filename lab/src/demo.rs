@@ -12,7 +12,7 @@ use crate::recordings;
 use crate::replay::{Options, Outputs, Place, Replayed, Runner, replay};
 use crate::rig::Rig;
 use crate::simulate::{self, SimulateArgs};
-use crate::tools::{Leave, Missing};
+use crate::tools::{Leave, MissingTools};
 
 /// Runs the demonstration; what had to be left out is told at the end.
 ///
@@ -23,7 +23,7 @@ pub fn run() -> Result<()> {
     println!("1. The device: its image, and QEMU to run it");
     let device = match Device::prepare(Leave::Install) {
         Ok(device) => Some(Runner::Device(device)),
-        Err(error) if error.is::<Missing>() => {
+        Err(error) if error.is::<MissingTools>() => {
             left_out.push(format!("the device: {error}"));
             None
         }

@@ -28,10 +28,9 @@ impl Device {
     /// Finds the tools, or sets them up where `leave` is given, and builds the image.
     ///
     /// # Errors
-    /// A tool is missing (as [`tools::Missing`]), the sources are not there, or the build fails.
+    /// A tool is missing (as [`tools::MissingTools`]), the sources are not there, or the build fails.
     pub fn prepare(leave: Leave) -> Result<Self> {
-        tools::cross_target(leave)?;
-        Ok(Self { qemu: tools::qemu(leave)?, image: build("replay")? })
+        Ok(Self { qemu: tools::for_the_device(leave)?, image: build("replay")? })
     }
 
     /// Feeds `samples` to the image and hands each outcome to `take`, in order; `progress` is told meanwhile how many are

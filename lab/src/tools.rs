@@ -33,6 +33,22 @@ pub struct Missing {
     pub command: String,
 }
 
+/// All that is missing for one purpose.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+pub struct MissingTools(pub Vec<Missing>);
+
+/// Finds or installs what building and running the device's image takes; QEMU's path.
+///
+/// # Errors
+/// All that is not there and cannot be installed, so that a person is asked once.
+pub fn for_the_device(leave: Leave) -> Result<PathBuf, MissingTools> {
+    match (cross_target(leave), qemu(leave)) {
+        (Ok(()), Ok(qemu)) => Ok(qemu),
+        (target, qemu) => Err(MissingTools(target.err().into_iter().chain(qemu.err()).collect())),
+    }
+}
+
 /// Finds the cross target, or adds it by rustup.
 ///
 /// # Errors

@@ -16,13 +16,13 @@ use palpate_lab::recordings;
 use palpate_lab::replay::{Options, Plan};
 use palpate_lab::rig::{Contact, Rig};
 use palpate_lab::simulate;
-use palpate_lab::tools::{Leave, Missing};
+use palpate_lab::tools::{Leave, MissingTools};
 
 /// The device, or `None` with a word where its tools are absent.
 fn device() -> Option<Device> {
     match Device::prepare(Leave::Look) {
         Ok(device) => Some(device),
-        Err(error) if error.is::<Missing>() && std::env::var_os("PALPATE_DEVICE").is_none() => {
+        Err(error) if error.is::<MissingTools>() && std::env::var_os("PALPATE_DEVICE").is_none() => {
             eprintln!("left out: {error}");
             None
         }
