@@ -278,3 +278,23 @@ fn a_simulated_trial_has_the_column_names_of_its_rig() {
     assert!(header.starts_with("t_s,position_m,\"load, measured\",effort_N,"), "{:?}", header.lines().next());
     palpate().args(["replay", "--rig"]).arg(&rig).arg(&trial).assert().success();
 }
+
+#[test]
+fn a_contact_that_is_no_spring_and_damper_is_told() {
+    let folder = TempDir::new().expect("a folder");
+    let trial = folder.path().join("odd.csv");
+    let mut text = String::from("t_s,position_m,force_N\n");
+    for k in 0..1500 {
+        let phase = 62.831_853e-3 * f64::from(k);
+        let (x, v) = (0.010 + 0.003 * phase.sin(), 0.003 * 62.831_853 * phase.cos());
+        writeln!(text, "{:.3},{x:.7},{:.4}", f64::from(k) * 1e-3, 300.0 * x - 5.0 * v).expect("a string takes it");
+    }
+    fs::write(&trial, text).expect("a file");
+    let mut command = palpate();
+    command.args(["replay", "--method", "bls", "--rig"]).arg(bench_rig()).arg(&trial);
+    command.assert().success().stderr(contains("bls: for most of the contact K or B is negative"));
+    let (_folder, sound) = with_trial(1.5);
+    let mut command = palpate();
+    command.args(["replay", "--method", "bls", "--rig"]).arg(bench_rig()).arg(&sound);
+    command.assert().success().stderr(contains("negative").not());
+}

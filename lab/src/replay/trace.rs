@@ -70,17 +70,20 @@ impl Trace {
                 "{restarts} gaps in time, longer than the velocity filter can bridge: it began anew there"
             ));
         }
-        let unsure = |estimates: &[Estimate]| {
-            let wide = estimates.iter().filter(|estimate| estimate.flags.contains(Flags::DAMPING_UNCERTAIN));
-            wide.count() * 2 > contact
-        };
-        let names: Vec<&str> =
-            self.columns.iter().filter(|(_, estimates)| unsure(estimates)).map(|(method, _)| method.name()).collect();
-        if !names.is_empty() {
-            notices.push(format!(
-                "{}: for most of the contact B is not known to better than 30 %; the tool has to move more, or faster",
-                names.join(", ")
-            ));
+        for (flag, meaning) in [
+            (
+                Flags::NEGATIVE,
+                "K or B is negative, which no spring and damper is: the contact has physics that this model leaves out",
+            ),
+            (Flags::DAMPING_UNCERTAIN, "B is not known to better than 30 %; the tool has to move more, or faster"),
+        ] {
+            let mostly =
+                |estimates: &[Estimate]| estimates.iter().filter(|e| e.flags.contains(flag)).count() * 2 > contact;
+            let concerned = self.columns.iter().filter(|(_, estimates)| mostly(estimates));
+            let names: Vec<&str> = concerned.map(|(method, _)| method.name()).collect();
+            if !names.is_empty() {
+                notices.push(format!("{}: for most of the contact {meaning}", names.join(", ")));
+            }
         }
         notices
     }

@@ -27,7 +27,8 @@ fn rounded(value: f64, step: f64) -> f64 {
     if step == 0.0 {
         return value;
     }
-    let counts = (value / step).round();
+    // A count of minus zero is a count of zero, and is to be written so.
+    let counts = (value / step).round() + 0.0;
     // 3 * 0.1 is 0.30000000000000004, 3 / 10 is 0.3: a decimal step keeps a short text, and one text a count.
     let per_unit = step.recip().round();
     if (per_unit * step - 1.0).abs() < 4.0 * f64::EPSILON { counts / per_unit } else { counts * step }
