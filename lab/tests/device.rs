@@ -182,6 +182,32 @@ fn a_hostile_stream_has_the_same_bits_and_the_same_rejections() {
 }
 
 #[test]
+fn replay_on_either_side_writes_the_same_file() {
+    if device().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let rig = project().expect("sources").join("lab/rigs/bench.toml");
+    let trial = folder.path().join("trial.csv");
+    let palpate = || {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_palpate"));
+        command.env("PALPATE_NO_INSTALL", "1");
+        command
+    };
+    let simulated = palpate().args(["simulate", "--rig"]).arg(&rig).arg("--out").arg(&trial).status();
+    assert!(simulated.expect("palpate runs").success());
+    let [host, qemu] = ["host", "qemu"].map(|place| {
+        let out = folder.path().join(place);
+        let mut command = palpate();
+        command.args(["replay", "--on", place, "--rig"]).arg(&rig).arg(&trial).arg("--out").arg(&out);
+        assert!(command.output().expect("palpate runs").status.success(), "{place}");
+        std::fs::read(out.join("estimates.csv")).expect("estimates")
+    });
+    assert!(host.len() > 1_000_000, "{} bytes of 60 000 rows", host.len());
+    assert!(host == qemu, "estimates.csv differs");
+}
+
+#[test]
 fn an_empty_recording_and_a_single_sample_come_back() {
     let Some(device) = device() else { return };
     let config = every_estimator(StreamConfig::BENCH);

@@ -70,22 +70,29 @@ impl Trace {
                 "{restarts} gaps in time, longer than the velocity filter can bridge: it began anew there"
             ));
         }
-        for (flag, meaning) in [
-            (
-                Flags::NEGATIVE,
-                "K or B is negative, which no spring and damper is: the contact has physics that this model leaves out",
-            ),
-            (Flags::DAMPING_UNCERTAIN, "B is not known to better than 30 %; the tool has to move more, or faster"),
-        ] {
-            let mostly =
-                |estimates: &[Estimate]| estimates.iter().filter(|e| e.flags.contains(flag)).count() * 2 > contact;
-            let concerned = self.columns.iter().filter(|(_, estimates)| mostly(estimates));
-            let names: Vec<&str> = concerned.map(|(method, _)| method.name()).collect();
-            if !names.is_empty() {
-                notices.push(format!("{}: for most of the contact {meaning}", names.join(", ")));
-            }
-        }
+        let below_zero = |e: &Estimate| {
+            e.impedance.stiffness + e.half_width.stiffness < 0.0 || e.impedance.damping + e.half_width.damping < 0.0
+        };
+        notices.extend(self.mostly(contact, below_zero).map(|names| {
+            format!(
+                "{names}: for most of the contact K or B is negative with its whole interval, which no spring and damper \
+                 is: the contact has physics that this model leaves out"
+            )
+        }));
+        notices.extend(self.mostly(contact, |e| e.flags.contains(Flags::DAMPING_UNCERTAIN)).map(|names| {
+            format!(
+                "{names}: for most of the contact B is not known to better than 30 %; the tool has to move more, or faster"
+            )
+        }));
         notices
+    }
+
+    /// The methods of which `holds` is true for more than half of `contact` samples, `None` where there are none.
+    fn mostly(&self, contact: usize, holds: impl Fn(&Estimate) -> bool) -> Option<String> {
+        let concerned =
+            self.columns.iter().filter(|(_, estimates)| estimates.iter().filter(|e| holds(e)).count() * 2 > contact);
+        let names: Vec<&str> = concerned.map(|(method, _)| method.name()).collect();
+        (!names.is_empty()).then(|| names.join(", "))
     }
 
     /// The traces as the page shows them, for the samples that were fed.
