@@ -119,6 +119,9 @@ impl FrontEnd {
     /// Largest magnitude of position, force and rate, in internal units: its fourth power is far from overflow.
     pub const RANGE: f32 = 1e6;
 
+    /// Rate, in internal units, that is no movement by any measure.
+    const STILL: f32 = 1e-20;
+
     /// A period within this share of the nominal one is the nominal one (written times are rounded).
     const SAME_PERIOD: f32 = 1e-4;
 
@@ -189,6 +192,8 @@ impl FrontEnd {
             state.begin(&raw);
         }
         let rate = filter.update(&mut state.rate, raw.rate);
+        // The rate of a held tool dies away for ever: below this it is zero, and not a subnormal that stalls a host.
+        let rate = if rate.abs() < Self::STILL { 0.0 } else { rate };
         let observation = match self.config.velocity {
             Velocity::Paper => Observation { penetration: depth, rate, force },
             Velocity::Matched => Observation {

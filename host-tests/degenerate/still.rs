@@ -3,7 +3,7 @@
 use super::{B, K, all_know_stiffness, all_readable, excitation};
 use crate::rig;
 use crate::simulator::Noise;
-use palpate::{Bench, BlockConfig, Flags, FrontEndConfig, Method, Sample, StreamConfig};
+use palpate::{Bench, BlockConfig, BlockLeastSquares, Flags, FrontEndConfig, Identifier, Method, Sample, StreamConfig};
 
 /// An hour at 1 kHz.
 const HOUR: usize = 3_600_000;
@@ -55,6 +55,20 @@ fn a_contact_that_is_held_for_an_hour() {
     for (method, e) in Method::ALL.iter().zip(&moving) {
         assert!(!e.flags.contains(Flags::LITTLE_MOVEMENT), "{}: {:?}", method.name(), e.flags);
     }
+}
+
+#[test]
+fn a_contact_that_is_held_for_an_hour_under_a_full_window() {
+    let law = BlockLeastSquares::new(BlockConfig::default()).expect("sound settings");
+    let mut identifier = Identifier::<_, 300>::new(StreamConfig::BENCH, law).expect("sound settings");
+    let mut last = None;
+    for sample in excitation(1000).chain(held(HOUR)) {
+        last = Some(identifier.update(sample).expect("a good sample"));
+    }
+    let e = last.expect("samples");
+    assert!(e.flags.contains(Flags::DAMPING_HELD | Flags::DAMPING_UNCERTAIN | Flags::LITTLE_MOVEMENT), "{e:?}");
+    assert!((f64::from(e.impedance.stiffness) / K - 1.0).abs() < 0.02 && e.half_width.stiffness.is_finite(), "{e:?}");
+    assert!(e.impedance.damping.abs() < 100.0, "B was held while it still meant something: {e:?}");
 }
 
 #[test]
