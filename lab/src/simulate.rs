@@ -21,7 +21,7 @@ pub struct SimulateArgs {
     /// The rig file
     #[arg(long, value_name = "RIG.toml")]
     pub rig: PathBuf,
-    /// A rig file to simulate in its place, as `diagnose --model` writes it
+    /// A rig file to simulate in its place
     #[arg(long, value_name = "FILE.toml")]
     pub model: Option<PathBuf>,
     /// Seed of the sensor noise: the same seed, the same bytes

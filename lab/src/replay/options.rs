@@ -1,6 +1,7 @@
 //! The estimators' settings on the command line.
 
 use anyhow::Result;
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
 use palpate::{BENCH_WINDOW, BlockConfig, ConfigError, EwrlsConfig, LowPass, Method, SprlsConfig};
 
@@ -10,7 +11,7 @@ use crate::error::UsageError;
 #[derive(Debug, Clone, Args)]
 pub struct Options {
     /// Estimators, separated by commas
-    #[arg(long = "method", value_name = "NAME,...", value_delimiter = ',', default_value = "ewrls,sprls,bls,blmf", value_parser = method)]
+    #[arg(long = "method", value_name = "NAME,...", value_delimiter = ',', default_value = "ewrls,sprls,bls,blmf", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).try_map(|name| method(&name)))]
     pub methods: Vec<Method>,
     /// Window of the block methods and reset interval of reset_rls, in samples
     #[arg(long, value_name = "N", default_value_t = Self::default().window, value_parser = clap::value_parser!(u16).range(2..=BENCH_WINDOW as i64))]
@@ -78,10 +79,7 @@ pub enum LossChoice {
 }
 
 fn method(name: &str) -> Result<Method, String> {
-    Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
-        let names = Method::ALL.map(Method::name);
-        format!("found `{name}`, expected one of {}", names.join(", "))
-    })
+    Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| format!("`{name}` is no estimator"))
 }
 
 impl Options {
