@@ -13,6 +13,13 @@ fn palpate() -> Command {
     Command::new(env!("CARGO_BIN_EXE_palpate"))
 }
 
+/// `palpate replay` against the bench's rig.
+fn replay() -> Command {
+    let mut command = palpate();
+    command.args(["replay", "--rig"]).arg(bench_rig());
+    command
+}
+
 fn bench_rig() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("rigs").join("bench.toml")
 }
@@ -46,8 +53,8 @@ fn refuses(text: &[u8], words: &[&str]) {
     let trial = folder.path().join("trial.csv");
     fs::write(&trial, text).expect("a file");
     let out = folder.path().join("out");
-    let mut command = palpate();
-    command.args(["replay", "--rig"]).arg(bench_rig()).arg(&trial).arg("--out").arg(&out);
+    let mut command = replay();
+    command.arg(&trial).arg("--out").arg(&out);
     let assert = command.assert().code(1).stdout("");
     let assert = words.iter().fold(assert, |assert, word| assert.stderr(contains(*word)));
     assert.stderr(contains("panicked").not());
@@ -88,14 +95,7 @@ fn the_order_of_methods_and_a_second_run_change_nothing_else() {
     let (folder, trial) = with_trial(0.5);
     let run = |name: &str, methods: &str| {
         let out = folder.path().join(name);
-        palpate()
-            .args(["replay", "--method", methods, "--rig"])
-            .arg(bench_rig())
-            .arg(&trial)
-            .arg("--out")
-            .arg(&out)
-            .assert()
-            .success();
+        replay().args(["--method", methods]).arg(&trial).arg("--out").arg(&out).assert().success();
         out.join("estimates.csv")
     };
     let (first, second) = (run("a", "sprls,blmf"), run("b", "sprls,blmf"));
@@ -108,14 +108,7 @@ fn the_order_of_methods_and_a_second_run_change_nothing_else() {
 fn several_trials_get_a_folder_each_and_one_page() {
     let (folder, trial) = with_trial(0.4);
     let out = folder.path().join("out");
-    palpate()
-        .args(["replay", "--rig"])
-        .arg(bench_rig())
-        .args([&trial, &trial])
-        .arg("--out")
-        .arg(&out)
-        .assert()
-        .success();
+    replay().args([&trial, &trial]).arg("--out").arg(&out).assert().success();
     for place in ["01-trial/estimates.csv", "02-trial/estimates.csv", "replay.html"] {
         assert!(out.join(place).is_file(), "{place}");
     }
@@ -138,13 +131,7 @@ fn broken_recordings_are_refused_with_place_finding_and_expectation() {
 fn a_file_that_is_not_there_is_named() {
     let (folder, trial) = with_trial(0.01);
     let absent = folder.path().join("absent.csv");
-    palpate()
-        .args(["replay", "--rig"])
-        .arg(bench_rig())
-        .arg(&absent)
-        .assert()
-        .code(1)
-        .stderr(contains("absent.csv").and(contains("no such file")));
+    replay().arg(&absent).assert().code(1).stderr(contains("absent.csv").and(contains("no such file")));
     let rig = folder.path().join("absent.toml");
     palpate()
         .args(["replay", "--rig"])
@@ -179,16 +166,9 @@ fn a_wrong_option_is_the_command_lines_fault() {
         ("--on", "moon", "qemu"),
     ] {
         let option = format!("{option}={value}");
-        palpate()
-            .args(["replay", "--rig"])
-            .arg(bench_rig())
-            .arg(&trial)
-            .arg(&option)
-            .assert()
-            .code(2)
-            .stderr(contains(word));
+        replay().arg(&trial).arg(&option).assert().code(2).stderr(contains(word));
     }
-    palpate().args(["replay", "--rig"]).arg(bench_rig()).assert().code(2);
+    replay().assert().code(2);
     palpate().arg("divine").assert().code(2);
 }
 
@@ -197,15 +177,7 @@ fn a_place_that_cannot_be_written_is_told_before_the_work() {
     let (folder, trial) = with_trial(0.05);
     let file = folder.path().join("file");
     fs::write(&file, "in the way").expect("a file");
-    palpate()
-        .args(["replay", "--rig"])
-        .arg(bench_rig())
-        .arg(&trial)
-        .arg("--out")
-        .arg(file.join("out"))
-        .assert()
-        .code(1)
-        .stderr(contains("out"));
+    replay().arg(&trial).arg("--out").arg(file.join("out")).assert().code(1).stderr(contains("out"));
     assert_eq!(fs::read_to_string(&file).expect("still there"), "in the way");
 }
 
@@ -220,24 +192,17 @@ fn ten_samples_a_second_lower_the_filter_and_say_so() {
         writeln!(text, "{t:.1},{x:.8},{:.6}", 300.0 * x + 5.0 * 0.001 * (0.5 * t).cos()).expect("a string takes it");
     }
     fs::write(&trial, text).expect("a file");
-    let mut command = palpate();
-    command.args(["replay", "--method", "bls", "--window", "100", "--rig"]).arg(bench_rig()).arg(&trial);
+    let mut command = replay();
+    command.args(["--method", "bls", "--window", "100"]).arg(&trial);
     command.assert().success().stderr(contains("lowered from 20 to 2.0000 Hz")).stdout(contains("bls"));
-    palpate().args(["replay", "--velocity-cutoff", "20", "--rig"]).arg(bench_rig()).arg(&trial).assert().code(2);
+    replay().args(["--velocity-cutoff", "20"]).arg(&trial).assert().code(2);
 }
 
 #[test]
 fn a_million_rows_come_through() {
     let (folder, trial) = with_trial(1000.0);
     let out = folder.path().join("out");
-    palpate()
-        .args(["replay", "--method", "ewrls", "--rig"])
-        .arg(bench_rig())
-        .arg(&trial)
-        .arg("--out")
-        .arg(&out)
-        .assert()
-        .success();
+    replay().args(["--method", "ewrls"]).arg(&trial).arg("--out").arg(&out).assert().success();
     assert_eq!(column(&out.join("estimates.csv"), "t_s").len(), 1_000_000);
 }
 
@@ -247,14 +212,7 @@ fn what_is_simulated_is_replayed_to_the_rigs_own_figures() {
     let trial = folder.path().join("trial.csv");
     palpate().args(["simulate", "--seed", "3", "--rig"]).arg(bench_rig()).arg("--out").arg(&trial).assert().success();
     let out = folder.path().join("out");
-    palpate()
-        .args(["replay", "--method", "bls", "--rig"])
-        .arg(bench_rig())
-        .arg(&trial)
-        .arg("--out")
-        .arg(&out)
-        .assert()
-        .success();
+    replay().args(["--method", "bls"]).arg(&trial).arg("--out").arg(&out).assert().success();
     let known: Vec<(f64, f64)> = column(&out.join("estimates.csv"), "bls_stiffness_n_m")
         .into_iter()
         .zip(column(&out.join("estimates.csv"), "bls_stiffness_ci95_n_m"))
@@ -290,11 +248,11 @@ fn a_contact_that_is_no_spring_and_damper_is_told() {
         writeln!(text, "{:.3},{x:.7},{:.4}", f64::from(k) * 1e-3, 300.0 * x - 5.0 * v).expect("a string takes it");
     }
     fs::write(&trial, text).expect("a file");
-    let mut command = palpate();
-    command.args(["replay", "--method", "bls", "--rig"]).arg(bench_rig()).arg(&trial);
+    let mut command = replay();
+    command.args(["--method", "bls"]).arg(&trial);
     command.assert().success().stderr(contains("bls: for most of the contact K or B is negative"));
     let (_folder, sound) = with_trial(1.5);
-    let mut command = palpate();
-    command.args(["replay", "--method", "bls", "--rig"]).arg(bench_rig()).arg(&sound);
+    let mut command = replay();
+    command.args(["--method", "bls"]).arg(&sound);
     command.assert().success().stderr(contains("negative").not());
 }
