@@ -4,8 +4,9 @@ use crate::confidence::Confidence;
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_not_negative};
 use crate::flags::Flags;
-use crate::law::{Law, Step};
+use crate::law::Law;
 use crate::math::larger;
+use crate::step::Step;
 use crate::sym2::Sym2;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// Settings of every block law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BlockConfig {
-    /// Samples that an estimate rests on, at least 2; at most what the ring holds, or the ring's capacity is the window.
+    /// Samples that an estimate rests on, at least 2, at most the capacity of the ring.
     pub window: u16,
     /// Samples below which the estimate is held, at least 2, at most `window`.
     pub minimum_fill: u16,
@@ -150,17 +151,30 @@ pub struct Move {
     pub flags: Flags,
 }
 
+/// A window as a criterion sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct View<'a> {
+    pub config: &'a BlockConfig,
+    pub recent: Recent<'a>,
+    /// The estimate that `sums` are taken about.
+    pub estimate: Impedance,
+    pub sums: Sums,
+    /// What least squares would do.
+    pub solution: Solution,
+}
+
+impl<'a> View<'a> {
+    pub fn of(config: &'a BlockConfig, recent: Recent<'a>, estimate: Impedance) -> Self {
+        let sums = Sums::over(recent, estimate);
+        let solution = Solution::of(&sums, config);
+        Self { config, recent, estimate, sums, solution }
+    }
+}
+
 /// What one block law has of its own.
 pub trait Criterion {
-    /// The move from `estimate`, about which `sums` were taken, on a window that least squares would solve by `solution`.
-    fn advance(
-        &self,
-        config: &BlockConfig,
-        recent: Recent<'_>,
-        estimate: Impedance,
-        sums: &Sums,
-        solution: &Solution,
-    ) -> Move;
+    /// The move from the estimate of `view`.
+    fn advance(&self, view: &View<'_>) -> Move;
 }
 
 /// A law on a sliding window: what all of them share, about the criterion of each.
@@ -192,10 +206,9 @@ impl<C: Criterion> Law for BlockLaw<C> {
             let (confidence, excitation, flags) = (Confidence::NONE, 0.0, Flags::TOO_FEW);
             return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
         }
-        let sums = Sums::over(recent, state.estimate);
-        let solution = Solution::of(&sums, &self.config);
-        let Move { step, noise_variance, flags } =
-            self.criterion.advance(&self.config, recent, state.estimate, &sums, &solution);
+        let view = View::of(&self.config, recent, state.estimate);
+        let Move { step, noise_variance, flags } = self.criterion.advance(&view);
+        let View { sums, solution, .. } = view;
         let taken = state.move_by(step);
         Step {
             estimate: state.estimate,

@@ -1,6 +1,6 @@
 //! Block least mean fourth (BLMF): one exact line search of `sum e^4` a sample.
 
-use crate::block::{BlockConfig, BlockLaw, Criterion, Move, Solution, Sums};
+use crate::block::{BlockConfig, BlockLaw, Criterion, Move, View};
 use crate::contact::Impedance;
 use crate::cubic::depressed_root;
 use crate::error::ConfigError;
@@ -79,11 +79,8 @@ impl BlockLeastMeanFourth {
 
     /// The line search from `estimate` over `recent`; `None` where the gradient is zero or nothing is excited.
     pub fn line_search(&self, recent: Recent<'_>, estimate: Impedance) -> Option<LineSearch> {
-        let sums = Sums::over(recent, estimate);
-        let powers = Powers::over(recent, estimate, sums.largest_misfit)?;
-        let solution = Solution::of(&sums, &self.config);
-        let direction = self.criterion.unit_direction(&self.config, &powers, &solution)?;
-        search(recent, estimate, &powers, direction)
+        let view = View::of(&self.config, recent, estimate);
+        self.criterion.search(&view, &Powers::of(&view)?)
     }
 }
 
@@ -91,7 +88,8 @@ impl BlockLeastMeanFourth {
 const FLAT: f32 = 1e-22;
 
 /// The exact line search along the unit vector `u`; `None` where nothing is excited along it.
-fn search(recent: Recent<'_>, estimate: Impedance, powers: &Powers, u: Impedance) -> Option<LineSearch> {
+fn search_along(u: Impedance, view: &View<'_>, powers: &Powers) -> Option<LineSearch> {
+    let (recent, estimate) = (view.recent, view.estimate);
     let reach = u.stiffness.abs() * powers.reach.stiffness + u.damping.abs() * powers.reach.damping;
     let (to_p, to_e) = (1.0 / reach, 1.0 / powers.largest);
     let (mut a, mut b3, mut c3, mut d1) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
@@ -122,15 +120,19 @@ fn search(recent: Recent<'_>, estimate: Impedance, powers: &Powers, u: Impedance
 }
 
 impl LeastMeanFourth {
+    fn search(&self, view: &View<'_>, powers: &Powers) -> Option<LineSearch> {
+        search_along(self.unit_direction(view, powers)?, view, powers)
+    }
+
     /// Where B cannot be told, Newton's direction is that of K alone.
-    fn unit_direction(&self, config: &BlockConfig, powers: &Powers, solution: &Solution) -> Option<Impedance> {
+    fn unit_direction(&self, view: &View<'_>, powers: &Powers) -> Option<Impedance> {
         let descent = powers.descent;
         let newton = match self.direction {
             Direction::SteepestDescent => None,
-            Direction::Newton if solution.flags.contains(Flags::DAMPING_HELD) => {
+            Direction::Newton if view.solution.flags.contains(Flags::DAMPING_HELD) => {
                 Some(Impedance { damping: 0.0, ..descent })
             }
-            Direction::Newton => powers.hessian.solve(descent, config.independence_floor),
+            Direction::Newton => powers.hessian.solve(descent, view.config.independence_floor),
         };
         let d = newton.filter(|d| d.is_finite()).unwrap_or(descent);
         let largest = larger(d.stiffness.abs(), d.damping.abs());
@@ -144,26 +146,16 @@ impl LeastMeanFourth {
 }
 
 impl Criterion for LeastMeanFourth {
-    fn advance(
-        &self,
-        config: &BlockConfig,
-        recent: Recent<'_>,
-        estimate: Impedance,
-        sums: &Sums,
-        solution: &Solution,
-    ) -> Move {
-        let powers = Powers::over(recent, estimate, sums.largest_misfit);
-        let search = powers.and_then(|powers| {
-            let direction = self.unit_direction(config, &powers, solution)?;
-            search(recent, estimate, &powers, direction)
-        });
+    fn advance(&self, view: &View<'_>) -> Move {
+        let powers = Powers::of(view);
+        let search = powers.and_then(|powers| self.search(view, &powers));
         Move {
             step: search.map_or(Impedance::ZERO, |s| Impedance::ZERO.moved(s.length, s.direction)),
-            noise_variance: powers.map_or(0.0, |powers| powers.noise_variance(sums.samples)),
+            noise_variance: powers.map_or(0.0, |powers| powers.noise_variance(view.sums.samples)),
             flags: match self.direction {
                 // It moves both along its gradient, whatever least squares could have solved for.
-                Direction::SteepestDescent => solution.flags & Flags::HELD,
-                Direction::Newton => solution.flags,
+                Direction::SteepestDescent => view.solution.flags & Flags::HELD,
+                Direction::Newton => view.solution.flags,
             },
         }
     }
@@ -171,14 +163,15 @@ impl Criterion for LeastMeanFourth {
 
 impl Powers {
     /// `None` where every misfit is zero, or so small that its inverse is infinite.
-    fn over(recent: Recent<'_>, estimate: Impedance, largest: f32) -> Option<Self> {
+    fn of(view: &View<'_>) -> Option<Self> {
+        let largest = view.sums.largest_misfit;
         let scale = 1.0 / largest;
         if !scale.is_finite() || largest <= 0.0 {
             return None;
         }
         let mut s = Self { largest, ..Self::default() };
-        recent.for_each(|o| {
-            let (x, v, e) = (o.penetration, o.rate, o.misfit(estimate) * scale);
+        view.recent.for_each(|o| {
+            let (x, v, e) = (o.penetration, o.rate, o.misfit(view.estimate) * scale);
             let square = e * e;
             let cube = square * e;
             s.descent.stiffness += x * cube;

@@ -1,11 +1,10 @@
 //! Block least mean square (BLMS): one step of steepest descent a sample, with the closed-form step size.
 
-use crate::block::{BlockConfig, BlockLaw, Criterion, Move, Solution, Sums};
+use crate::block::{BlockConfig, BlockLaw, Criterion, Move, Sums, View};
 use crate::contact::Impedance;
 use crate::error::ConfigError;
 use crate::flags::Flags;
 use crate::math::larger;
-use crate::window::Recent;
 
 /// `theta += step u` along `u = -g/|g|`, `g = -sum phi e`, where the step minimises `sum (e - step phi'u)^2` over the
 /// window: `step = sum p e / sum p^2` with `p = phi'u`.
@@ -28,7 +27,8 @@ impl BlockLeastMeanSquare {
 }
 
 impl Criterion for LeastMeanSquare {
-    fn advance(&self, _: &BlockConfig, _: Recent<'_>, _: Impedance, sums: &Sums, solution: &Solution) -> Move {
+    fn advance(&self, view: &View<'_>) -> Move {
+        let (sums, solution) = (&view.sums, &view.solution);
         Move {
             step: steepest_step(sums),
             noise_variance: solution.residual_variance(sums),

@@ -1,9 +1,7 @@
 //! Block least squares (BLS) over a sliding window.
 
-use crate::block::{BlockConfig, BlockLaw, Criterion, Move, Solution, Sums};
-use crate::contact::Impedance;
+use crate::block::{BlockConfig, BlockLaw, Criterion, Move, View};
 use crate::error::ConfigError;
-use crate::window::Recent;
 
 /// `theta = (sum phi phi')^-1 sum phi F` over the window (eq. 5-6), by the closed 2x2 inverse.
 ///
@@ -26,7 +24,8 @@ impl BlockLeastSquares {
 }
 
 impl Criterion for LeastSquares {
-    fn advance(&self, _: &BlockConfig, _: Recent<'_>, _: Impedance, sums: &Sums, solution: &Solution) -> Move {
+    fn advance(&self, view: &View<'_>) -> Move {
+        let (sums, solution) = (&view.sums, &view.solution);
         Move { step: solution.correction, noise_variance: solution.residual_variance(sums), flags: solution.flags }
     }
 }

@@ -4,8 +4,8 @@ use crate::contact::Impedance;
 use crate::error::{ConfigError, require_not_negative};
 use crate::flags::Flags;
 use crate::front_end::FrontEnd;
-use crate::law::Step;
 use crate::math::{larger, sqrt};
+use crate::step::Step;
 use serde::{Deserialize, Serialize};
 
 /// An estimate with its quality, in SI.
@@ -71,7 +71,9 @@ impl Sensors {
 /// seconds, (w T)^2 / 12 of B.
 #[derive(Debug, Clone, Copy)]
 pub struct Assessor {
-    units: crate::Units,
+    /// One internal unit of K and of B.
+    unit: Impedance,
+    force_unit: f32,
     correlated_samples: f32,
     half_count: f32,
     position_variance: f32,
@@ -90,7 +92,8 @@ impl Assessor {
         let position = sensors.position_resolution / units.penetration;
         let force = sensors.force_noise / units.force;
         Self {
-            units,
+            unit: units.impedance(),
+            force_unit: units.force,
             correlated_samples: front_end.correlated_samples(),
             half_count: 0.5 * position,
             position_variance: position * position / 12.0,
@@ -104,17 +107,21 @@ impl Assessor {
         let mut flags = step.flags;
         flags.set(Flags::FILLING, step.fill < 0.99);
         flags.set(Flags::NEGATIVE, step.estimate.stiffness < 0.0 || step.estimate.damping < 0.0);
-        let wide = |half_width: f32, value: f32| half_width.is_nan() || half_width > Self::WIDE * value.abs();
+        let wide = |half_width: f32, value: f32| half_width > Self::WIDE * value.abs();
         flags.set(Flags::STIFFNESS_UNCERTAIN, wide(half_width.stiffness, step.estimate.stiffness));
         flags.set(Flags::DAMPING_UNCERTAIN, wide(half_width.damping, step.estimate.damping));
         Estimate {
-            impedance: self.units.impedance_to_si(step.estimate),
-            half_width: self.units.impedance_to_si(half_width),
-            innovation: step.innovation * self.units.force,
+            impedance: self.in_si(step.estimate),
+            half_width: self.in_si(half_width),
+            innovation: step.innovation * self.force_unit,
             fill: step.fill,
             excitation: step.excitation,
             flags,
         }
+    }
+
+    fn in_si(&self, internal: Impedance) -> Impedance {
+        Impedance { stiffness: internal.stiffness * self.unit.stiffness, damping: internal.damping * self.unit.damping }
     }
 
     fn half_width(&self, step: &Step) -> Impedance {

@@ -3,8 +3,9 @@
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require};
 use crate::flags::Flags;
-use crate::law::{Law, Step};
+use crate::law::Law;
 use crate::recursive::{RecursiveState, check_covariance};
+use crate::step::Step;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -78,12 +79,11 @@ impl Law for Ewrls {
         let lambda = self.config.forgetting_factor;
         let o = recent.newest().unwrap_or_default();
         let innovation = o.misfit(state.estimate);
-        let mut next = *state;
-        let gain = next.advance(&o, innovation, lambda);
-        let limited = next.covariance.limit(self.config.covariance_limit);
-        let mut flags = state.commit(next);
+        let mut covariance = state.covariance;
+        let gain = covariance.observe(&o, lambda);
+        let limited = covariance.limit(self.config.covariance_limit);
+        let mut flags = state.commit(gain, innovation, covariance, self.config.initial_covariance);
         flags.set(Flags::LIMITED, limited);
-        let step = state.step(&o, gain, innovation, lambda);
-        Step { flags, ..step }
+        state.step(&o, gain, innovation, lambda, flags)
     }
 }

@@ -188,6 +188,7 @@ fn rejection_of(status: u32) -> Option<Option<Rejection>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    extern crate std;
 
     #[test]
     fn every_outcome_survives_the_journey_to_the_bit() {
@@ -213,5 +214,4 @@ mod tests {
         assert_eq!(decode_record(&[7, 0, 0, 0], methods), None, "a status that does not exist");
         assert_eq!(decode_record(&[0; 40], methods), None, "cut short");
     }
-    extern crate std;
 }

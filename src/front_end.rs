@@ -90,9 +90,15 @@ pub struct Reading {
 pub struct FrontEnd {
     config: FrontEndConfig,
     nominal: LowPass,
+    /// `config.gate` in internal units.
+    gate: GateConfig,
+    /// Factors from SI to internal: of position, of force, and of internal penetration over seconds.
+    to_penetration: f32,
+    to_force: f32,
+    to_rate: f32,
 }
 
-/// The sample before, in internal units.
+/// A sample as the next one needs it, in internal units.
 #[derive(Debug, Clone, Copy)]
 struct Before {
     /// Depth below the surface, negative outside.
@@ -100,14 +106,14 @@ struct Before {
     /// The same, zero outside unless the contact is bilateral.
     depth: f32,
     force: f32,
-    /// The filters have taken no input since they began anew.
-    fresh: bool,
 }
 
 /// Filters, gate and the sample before.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FrontEndState {
     before: Option<Before>,
+    /// The filters have taken no input since they began anew.
+    fresh: bool,
     skipped: f32,
     penetration: LowPassState,
     rate: LowPassState,
@@ -138,7 +144,19 @@ impl FrontEnd {
         require(config.surface.is_finite(), "surface", "a finite position")?;
         config.gate.check()?;
         config.units.check()?;
-        Ok(Self { config, nominal: LowPass::new(cycles) })
+        let units = config.units;
+        Ok(Self {
+            config,
+            nominal: LowPass::new(cycles),
+            gate: GateConfig {
+                on_force: config.gate.on_force / units.force,
+                off_force: config.gate.off_force / units.force,
+                ..config.gate
+            },
+            to_penetration: 1.0 / units.penetration,
+            to_force: 1.0 / units.force,
+            to_rate: units.penetration / units.rate,
+        })
     }
 
     /// The settings.
@@ -165,30 +183,16 @@ impl FrontEnd {
         })?;
         let elapsed = sample.elapsed + state.skipped;
         state.skipped = 0.0;
-        let touching = self.config.bilateral
-            || self.config.gate.update(
-                &mut state.gate,
-                penetration * self.config.units.penetration,
-                force * self.config.units.force,
-            );
+        let contact = self.config.bilateral || self.gate.update(&mut state.gate, penetration, force);
         let depth = if self.config.bilateral { penetration } else { larger(penetration, 0.0) };
-        let before = state.before.replace(Before { penetration, depth, force, fresh: false });
-        let (Some(before), Some(filter)) = (before, self.filter_for(elapsed)) else {
-            state.before = Some(Before { penetration, depth, force, fresh: true });
+        let now = Before { penetration, depth, force };
+        let (Some(before), Some(filter)) = (state.before.replace(now), self.filter_for(elapsed)) else {
+            state.fresh = true;
             let observation = Observation { penetration: depth, rate: 0.0, force };
-            return Ok(Reading { observation, contact: touching, restarted: true });
+            return Ok(Reading { observation, contact, restarted: true });
         };
-        let way = match self.config.velocity {
-            Velocity::Paper => penetration - before.penetration,
-            Velocity::Matched => depth - before.depth,
-        };
-        let rate = way / elapsed * (self.config.units.penetration / self.config.units.rate);
-        let raw = Observation {
-            penetration: 0.5 * (depth + before.depth),
-            rate: rate.clamp(-Self::RANGE, Self::RANGE),
-            force: 0.5 * (force + before.force),
-        };
-        if before.fresh {
+        let raw = self.raw(&before, &now, elapsed);
+        if state.fresh {
             state.begin(&raw);
         }
         let rate = filter.update(&mut state.rate, raw.rate);
@@ -202,7 +206,21 @@ impl FrontEnd {
                 force: filter.update(&mut state.force, raw.force),
             },
         };
-        Ok(Reading { observation, contact: touching, restarted: false })
+        Ok(Reading { observation, contact, restarted: false })
+    }
+
+    /// The row between two samples, not yet filtered: means and the difference, which belong to one instant.
+    fn raw(&self, before: &Before, now: &Before, elapsed: f32) -> Observation {
+        let way = match self.config.velocity {
+            Velocity::Paper => now.penetration - before.penetration,
+            Velocity::Matched => now.depth - before.depth,
+        };
+        let rate = way / elapsed * self.to_rate;
+        Observation {
+            penetration: 0.5 * (now.depth + before.depth),
+            rate: rate.clamp(-Self::RANGE, Self::RANGE),
+            force: 0.5 * (now.force + before.force),
+        }
     }
 
     /// Penetration and force in internal units.
@@ -212,8 +230,8 @@ impl FrontEnd {
         if let Some((_, field)) = fields.into_iter().find(|(value, _)| !value.is_finite()) {
             return Err(Rejection::NotFinite(field));
         }
-        let penetration = (sample.position - self.config.surface) / self.config.units.penetration;
-        let force = sample.force / self.config.units.force;
+        let penetration = (sample.position - self.config.surface) * self.to_penetration;
+        let force = sample.force * self.to_force;
         if penetration.abs() > Self::RANGE {
             Err(Rejection::OutOfRange(Field::Position))
         } else if force.abs() > Self::RANGE {
@@ -243,5 +261,6 @@ impl FrontEndState {
         self.penetration = LowPassState::at_rest(row.penetration);
         self.rate = LowPassState::at_rest(row.rate);
         self.force = LowPassState::at_rest(row.force);
+        self.fresh = false;
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::{ConfigError, require, require_not_negative};
 use serde::{Deserialize, Serialize};
 
-/// Thresholds with hysteresis, in SI.
+/// Thresholds with hysteresis.
 ///
 /// "Force is not zero" alone marks most of free space as contact, for a sensor is never silent: contact begins with a
 /// force above `on_force` at a penetration of at least zero, and ends after `off_samples` samples in a row that are
@@ -39,7 +39,7 @@ impl GateConfig {
         require(self.off_samples > 0, "gate.off_samples", "at least 1")
     }
 
-    /// Takes the penetration and force of one sample; whether the tool is in contact.
+    /// Takes the penetration and force of one sample, in the unit of the thresholds; whether the tool is in contact.
     pub fn update(self, state: &mut GateState, penetration: f32, force: f32) -> bool {
         if state.closed {
             let away = force < self.off_force || penetration < 0.0;

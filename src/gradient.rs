@@ -1,10 +1,11 @@
 //! The constant-gain gradient law.
 
-use crate::confidence::Propagation;
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require_positive};
 use crate::flags::Flags;
-use crate::law::{Law, Step};
+use crate::law::Law;
+use crate::propagation::{MEMORY, Propagation};
+use crate::step::Step;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -46,9 +47,6 @@ pub struct GradientState {
 }
 
 impl Gradient {
-    /// A memory of 300 samples for the noise figure.
-    const NOISE_FORGETTING: f32 = 1.0 - 1.0 / 300.0;
-
     /// Checks the settings.
     ///
     /// # Errors
@@ -88,17 +86,10 @@ impl Law for Gradient {
         let mut flags = Flags::empty();
         if next.is_finite() {
             state.estimate = next;
-            state.uncertainty.advance(&o, gain, innovation, Self::NOISE_FORGETTING);
+            state.uncertainty.advance(&o, gain, innovation, MEMORY);
         } else {
             flags = Flags::HELD;
         }
-        Step {
-            estimate: state.estimate,
-            innovation,
-            confidence: state.uncertainty.confidence(state.estimate),
-            fill: state.uncertainty.fill(Self::NOISE_FORGETTING),
-            excitation: state.uncertainty.excitation(),
-            flags,
-        }
+        state.uncertainty.step(state.estimate, innovation, MEMORY, flags)
     }
 }

@@ -1,8 +1,6 @@
 //! What every estimator is: settings that turn a state and the newest observation into the next estimate.
 
-use crate::confidence::Confidence;
-use crate::contact::Impedance;
-use crate::flags::Flags;
+use crate::step::Step;
 use crate::window::Recent;
 
 /// An estimation law. The implementor is the checked configuration; what it has learnt is in `State`.
@@ -24,21 +22,4 @@ pub trait Law {
 
     /// One update. The newest of `recent` has not been seen before; the older ones have.
     fn update(&self, state: &mut Self::State, recent: Recent<'_>) -> Step;
-}
-
-/// What one update found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// The estimate after it.
-    pub estimate: Impedance,
-    /// Newest force minus what the estimate before the update predicted.
-    pub innovation: f32,
-    /// How sure the estimate is.
-    pub confidence: Confidence,
-    /// Share of the window or memory that is filled, 0 to 1.
-    pub fill: f32,
-    /// Independence of penetration and rate in the window or memory, 0 (one line) to 1 (at right angles).
-    pub excitation: f32,
-    /// What was out of the ordinary.
-    pub flags: Flags,
 }

@@ -1,16 +1,16 @@
 //! What the recursive least-squares laws share: estimate, covariance, uncertainty.
 
-use crate::confidence::Propagation;
 use crate::contact::{Impedance, Observation};
 use crate::covariance::Covariance;
 use crate::error::{ConfigError, require, require_positive};
 use crate::flags::Flags;
-use crate::law::Step;
 use crate::math::smaller;
+use crate::propagation::Propagation;
+use crate::step::Step;
 
-/// Forgetting factor, at most, over which the noise is measured: a memory of a thousand samples follows a sensor that
-/// changes, and a sum in single precision over it is exact to 1e-4.
-const NOISE_FORGETTING: f32 = 0.999;
+/// Forgetting factor, at most, of what tells fill and excitation: a sum in single precision over a memory of a thousand
+/// samples is exact to 1e-4, and one that never forgets would stop growing.
+const LONGEST_MEMORY: f32 = 0.999;
 
 /// The state of a recursive least-squares law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,46 +19,47 @@ pub struct RecursiveState {
     pub estimate: Impedance,
     /// Covariance per unit of noise variance.
     pub covariance: Covariance,
-    pub(crate) uncertainty: Propagation,
-    pub(crate) start: Covariance,
+    uncertainty: Propagation,
 }
 
 impl RecursiveState {
     /// With the estimate at `estimate` and all else at its start.
     pub(crate) fn new(initial_covariance: f32, estimate: Impedance) -> Self {
-        let start = Covariance::identity(initial_covariance);
-        Self { estimate, covariance: start, uncertainty: Propagation::new(estimate), start }
+        let covariance = Covariance::identity(initial_covariance);
+        Self { estimate, covariance, uncertainty: Propagation::new(estimate) }
     }
 
-    /// The bare recursion: `theta += P phi / s * innovation` and the covariance behind it. Returns the gain.
-    pub fn advance(&mut self, o: &Observation, innovation: f32, forgetting: f32) -> Impedance {
-        let gain = self.covariance.observe(o, forgetting);
-        self.estimate = self.estimate.moved(innovation, gain);
-        gain
-    }
-
-    /// Commits `next` where it is sound, else keeps the estimate and starts the covariance anew.
-    pub(crate) fn commit(&mut self, next: Self) -> Flags {
-        if next.covariance.is_sound() && next.estimate.is_finite() {
-            *self = next;
+    /// Moves the estimate by `gain * innovation` and takes `covariance`, both or neither; where either is unsound, the
+    /// covariance starts anew.
+    pub(crate) fn commit(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        initial_covariance: f32,
+    ) -> Flags {
+        let estimate = self.estimate.moved(innovation, gain);
+        if covariance.is_sound() && estimate.is_finite() {
+            (self.estimate, self.covariance) = (estimate, covariance);
             Flags::empty()
         } else {
-            self.covariance = self.start;
+            self.covariance = Covariance::identity(initial_covariance);
             Flags::RESET
         }
     }
 
-    pub(crate) fn step(&mut self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) -> Step {
-        let forgetting = smaller(forgetting, NOISE_FORGETTING);
+    /// The outcome, told with the memory that `forgetting` gives.
+    pub(crate) fn step(
+        &mut self,
+        o: &Observation,
+        gain: Impedance,
+        innovation: f32,
+        forgetting: f32,
+        flags: Flags,
+    ) -> Step {
+        let forgetting = smaller(forgetting, LONGEST_MEMORY);
         self.uncertainty.advance(o, gain, innovation, forgetting);
-        Step {
-            estimate: self.estimate,
-            innovation,
-            confidence: self.uncertainty.confidence(self.estimate),
-            fill: self.uncertainty.fill(forgetting),
-            excitation: self.uncertainty.excitation(),
-            flags: Flags::empty(),
-        }
+        self.uncertainty.step(self.estimate, innovation, forgetting, flags)
     }
 }
 

@@ -1,9 +1,11 @@
 //! Recursive least squares with covariance resetting.
 
 use crate::contact::Impedance;
+use crate::covariance::Covariance;
 use crate::error::{ConfigError, require};
-use crate::law::{Law, Step};
+use crate::law::Law;
 use crate::recursive::{RecursiveState, check_initial_covariance};
+use crate::step::Step;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -75,15 +77,15 @@ impl Law for ResetRls {
     fn update(&self, state: &mut ResetRlsState, recent: Recent<'_>) -> Step {
         let o = recent.newest().unwrap_or_default();
         if state.since_reset >= self.config.reset_interval {
-            state.recursion.covariance = state.recursion.start;
+            state.recursion.covariance = Covariance::identity(self.config.initial_covariance);
             state.since_reset = 0;
         }
         state.since_reset += 1;
         let innovation = o.misfit(state.recursion.estimate);
-        let mut next = state.recursion;
-        let gain = next.advance(&o, innovation, 1.0);
-        let flags = state.recursion.commit(next);
-        let step = state.recursion.step(&o, gain, innovation, 1.0 - 1.0 / f32::from(self.config.reset_interval));
-        Step { flags, ..step }
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe(&o, 1.0);
+        let flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
+        let memory = 1.0 - 1.0 / f32::from(self.config.reset_interval);
+        state.recursion.step(&o, gain, innovation, memory, flags)
     }
 }

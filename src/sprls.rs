@@ -3,9 +3,11 @@
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require_not_negative};
 use crate::flags::Flags;
-use crate::law::{Law, Step};
+use crate::law::Law;
 use crate::math::smaller;
+use crate::propagation::MEMORY;
 use crate::recursive::{RecursiveState, check_covariance};
+use crate::step::Step;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -57,9 +59,6 @@ pub struct SprlsState {
 }
 
 impl Sprls {
-    /// The share of the past that the noise figure keeps, a memory of 300 samples: the law has no forgetting factor.
-    const NOISE_FORGETTING: f32 = 1.0 - 1.0 / 300.0;
-
     /// Checks the settings.
     ///
     /// # Errors
@@ -104,17 +103,16 @@ impl Law for Sprls {
     fn update(&self, state: &mut SprlsState, recent: Recent<'_>) -> Step {
         let o = recent.newest().unwrap_or_default();
         let innovation = o.misfit(state.recursion.estimate);
-        let mut next = state.recursion;
-        let gain = next.advance(&o, innovation, 1.0);
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe(&o, 1.0);
         let kick = self.kick(state.innovation_before);
         if kick > 0.0 {
-            next.covariance.inflate(kick);
+            covariance.inflate(kick);
         }
-        let limited = next.covariance.limit(self.config.covariance_limit);
-        let mut flags = state.recursion.commit(next);
+        let limited = covariance.limit(self.config.covariance_limit);
+        let mut flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
         flags.set(Flags::LIMITED, limited);
         state.innovation_before = innovation;
-        let step = state.recursion.step(&o, gain, innovation, Self::NOISE_FORGETTING);
-        Step { flags, ..step }
+        state.recursion.step(&o, gain, innovation, MEMORY, flags)
     }
 }

@@ -62,12 +62,9 @@ impl Units {
         Ok(())
     }
 
-    /// SI from internal.
-    pub fn impedance_to_si(self, internal: Impedance) -> Impedance {
-        Impedance {
-            stiffness: internal.stiffness * (self.force / self.penetration),
-            damping: internal.damping * (self.force / self.rate),
-        }
+    /// One internal unit of K and of B, in SI.
+    pub fn impedance(self) -> Impedance {
+        Impedance { stiffness: self.force / self.penetration, damping: self.force / self.rate }
     }
 
     /// Internal from SI.

@@ -80,18 +80,18 @@ fn print_side_by_side(rig: &Rig, host: &Replayed, device: Option<&Replayed>) -> 
         format!("K on the host [{k}]"),
         format!("B on the host [{b}]")
     );
-    for (at, method) in host.trace.methods(&host.plan.samples).iter().enumerate() {
+    for (at, (method, summary)) in host.trace.summaries(&host.plan.samples).into_iter().enumerate() {
         let verdict = match device {
             None => "left out".to_owned(),
             Some(device) => same_bits(host, device, at)?,
         };
-        let (k, b) = method.summary.map_or(("unknown".to_owned(), "unknown".to_owned()), |s| {
+        let (k, b) = summary.map_or(("unknown".to_owned(), "unknown".to_owned()), |s| {
             (
                 crate::replay::interval(s.stiffness, s.stiffness_half_width),
                 crate::replay::interval(s.damping, s.damping_half_width),
             )
         });
-        println!("   {:<8} {k:>26} {b:>26}   {verdict}", method.name);
+        println!("   {:<8} {k:>26} {b:>26}   {verdict}", method.name());
     }
     Ok(())
 }

@@ -93,12 +93,23 @@ impl Options {
             VelocityChoice::Paper => "low-passed difference of the position alone (paper)",
             VelocityChoice::Matched => "position, velocity and force through the same filter (matched)",
         };
+        let cutoff = self.velocity_cutoff.map_or_else(
+            || format!("{} Hz, or a fifth of the sample rate where that is less", Self::CUTOFF),
+            |given| format!("{given} Hz"),
+        );
+        let forgotten = match self.contact_loss {
+            LossChoice::Everything => "estimate, covariance and window",
+            LossChoice::Memory => "covariance and window",
+            LossChoice::Nothing => "nothing",
+        };
         [
             ("window of the block methods", format!("{} samples", self.window)),
             ("forgetting factor of ewrls", self.forgetting.to_string()),
             ("initial covariance", self.initial_covariance.to_string()),
             ("sprls gain and sensitivity", format!("{} and {}", self.sprls_beta, self.sprls_gamma)),
             ("velocity", velocity.to_owned()),
+            ("cut-off of the velocity filter", cutoff),
+            ("forgotten at a loss of contact", forgotten.to_owned()),
         ]
         .map(|(label, value)| (label.to_owned(), value))
         .into()

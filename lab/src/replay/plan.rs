@@ -49,20 +49,8 @@ impl Plan {
         let depth: Vec<f64> = recording.position.iter().map(|x| x - contact.surface).collect();
         let force: Vec<f64> = force.iter().map(|f| f - zero).collect();
         let figures = Figures::of(rig, recording);
-        let range = range(&depth, &force, period, cutoff, contact.bilateral);
-        let units = Units::for_range(range);
-        let mut notices: Vec<String> = lowered.into_iter().collect();
-        if units != Units::SI {
-            notices.push(format!(
-                "settings act in units of {:.3e} {}, {:.3e} {} and {:.3e} {}, in which this rig has the paper's proportions",
-                units.penetration,
-                rig.coordinate.position_unit(),
-                units.rate,
-                rig.coordinate.velocity_unit(),
-                units.force,
-                rig.coordinate.force_unit()
-            ));
-        }
+        let units = Units::for_range(range(&depth, &force, period, cutoff, contact.bilateral));
+        let notices = lowered.into_iter().chain(rescaled(units, rig)).collect();
         let front_end = FrontEndConfig {
             period: period as f32,
             surface: 0.0,
@@ -84,6 +72,22 @@ impl Plan {
             notices,
         })
     }
+}
+
+/// A word where the settings do not mean what the paper prints.
+fn rescaled(units: Units, rig: &Rig) -> Option<String> {
+    let coordinate = rig.coordinate;
+    (units != Units::SI).then(|| {
+        format!(
+            "settings act in units of {:.3e} {}, {:.3e} {} and {:.3e} {}, in which this rig has the paper's proportions",
+            units.penetration,
+            coordinate.position_unit(),
+            units.rate,
+            coordinate.velocity_unit(),
+            units.force,
+            coordinate.force_unit()
+        )
+    })
 }
 
 fn in_order(asked: &[Method]) -> Vec<Method> {

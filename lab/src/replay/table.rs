@@ -21,9 +21,9 @@ pub fn print(rig: &Rig, replayed: &[Replayed]) -> Result<()> {
         "RMSE %"
     )?;
     for r in replayed {
-        for method in r.trace.methods(&r.plan.samples) {
-            let name = format!("{:<28} {:<12}", r.recording.name, method.name);
-            match method.summary {
+        for (method, summary) in r.trace.summaries(&r.plan.samples) {
+            let name = format!("{:<28} {:<12}", r.recording.name, method.name());
+            match summary {
                 None => writeln!(out, "{name} never known: no contact, or no movement in it")?,
                 Some(s) => {
                     let k = interval(s.stiffness, s.stiffness_half_width);

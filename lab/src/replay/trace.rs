@@ -95,6 +95,12 @@ impl Trace {
         (!names.is_empty()).then(|| names.join(", "))
     }
 
+    /// The figures of each method, for the samples that were fed.
+    #[must_use]
+    pub fn summaries(&self, samples: &[Sample]) -> Vec<(Method, Option<page::Summary>)> {
+        self.columns.iter().map(|(method, estimates)| (*method, summary(estimates, samples))).collect()
+    }
+
     /// The traces as the page shows them, for the samples that were fed.
     #[must_use]
     pub fn methods(&self, samples: &[Sample]) -> Vec<page::Method> {
