@@ -1,8 +1,12 @@
 //! `palpate simulate`: the rig as its file describes it, run through a trial.
 
 mod bench;
+mod body;
+mod chain;
 mod controller;
 mod gauge;
+mod led;
+mod mover;
 mod trial;
 
 use std::path::PathBuf;
@@ -80,10 +84,12 @@ fn refuse_own_input(args: &SimulateArgs) -> Result<(), InputError> {
 ///
 /// With a drive the tool moves under its controller, without one it follows the reference exactly. Force is recorded where
 /// the rig has a contact, effort where it has a drive. What the rig leaves out of control, reference and sensors is the
-/// paper's bench where the rig is of its size; else control and reference are demanded and sensors are ideal.
+/// paper's bench where the rig is of its size; else control and reference are demanded and sensors are ideal. The rig's
+/// effects act where they belong; without any, or with effects of the sensor alone, the motion is the nominal one to the bit.
 ///
 /// # Errors
-/// The rig holds effects, has neither drive nor contact, lacks what no default fits, or is too stiff or too long to simulate.
+/// The rig has neither drive nor contact, lacks what no default fits, holds an effect that cannot be, or is too stiff or
+/// too long to simulate.
 pub fn simulate(rig: &Rig, seed: u64, origin: &str) -> Result<Trial, InputError> {
     trial::run(&bench::complete(rig, origin)?, seed, origin)
 }

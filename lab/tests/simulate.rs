@@ -347,6 +347,11 @@ fn every_example_rig_reads_round_trips_and_runs_into_its_surface() {
         let path = entry.unwrap().path();
         let rig = Rig::read(&path).unwrap();
         assert_eq!(rig, Rig::parse(&rig.to_toml(), "again").unwrap(), "{}", path.display());
+        seen += 1;
+        if rig.control.is_none() && rig.reference.is_none() {
+            // It goes with recordings of a real thing and is not meant to be run.
+            continue;
+        }
         let trial = simulate(&rig, 1, "rig").unwrap();
         // "note:" says that sensors left to the recording are simulated as ideal; a warning would be a fault of the file.
         assert!(
@@ -356,7 +361,6 @@ fn every_example_rig_reads_round_trips_and_runs_into_its_surface() {
             trial.notices
         );
         assert!(largest(trial.recording.force.as_ref().unwrap()) > 0.0);
-        seen += 1;
     }
     assert!(seen >= 9, "{seen} example rigs");
 }

@@ -1,5 +1,6 @@
 //! What a rig file leaves open, filled in or demanded.
 
+use crate::effects::{Active, Place, Resolved, resolve_all};
 use crate::error::InputError;
 use crate::reference::{self, is_bench_sized};
 use crate::rig::{Control, Reference, Rig, Simulation};
@@ -24,6 +25,7 @@ const FORCE_NOISE: f64 = 0.09;
 /// A rig with nothing left open.
 pub struct Setting {
     pub rig: Rig,
+    pub effects: Vec<Resolved>,
     pub control: Control,
     pub reference: Reference,
     pub simulation: Simulation,
@@ -32,6 +34,18 @@ pub struct Setting {
     pub force_noise: f64,
     pub force_zero: f64,
     pub notices: Vec<String>,
+}
+
+impl Setting {
+    /// The effects at work.
+    pub fn actives(&self) -> Vec<Active<'_>> {
+        self.effects.iter().map(Resolved::active).collect()
+    }
+
+    /// Whether an effect acts on the motion or on the force behind it, not on its reading alone.
+    pub fn moves_otherwise(&self) -> bool {
+        self.effects.iter().any(|resolved| resolved.effect.card().place != Place::Sensor)
+    }
 }
 
 /// Fills in what `rig` leaves open.
@@ -62,6 +76,7 @@ pub fn complete(rig: &Rig, origin: &str) -> Result<Setting, InputError> {
     let or_bench = |given: Option<f64>, bench: f64| given.unwrap_or(if fits { bench } else { 0.0 });
     Ok(Setting {
         rig: rig.clone(),
+        effects: resolve_all(rig, origin)?,
         control,
         reference,
         simulation: rig.simulation,
@@ -74,15 +89,6 @@ pub fn complete(rig: &Rig, origin: &str) -> Result<Setting, InputError> {
 }
 
 fn refuse_unable(rig: &Rig, origin: &str) -> Result<(), InputError> {
-    if !rig.effects.is_empty() {
-        let names: Vec<_> = rig.effects.iter().map(|effect| effect.name.as_str()).collect();
-        let place = format!("{origin}: [[effect]]");
-        return Err(InputError::new(
-            place,
-            names.join(", "),
-            "no effects: simulate knows the nominal model only, so far",
-        ));
-    }
     if rig.drive.is_none() && rig.contact.is_none() {
         return Err(InputError::new(origin, "neither [drive] nor [contact]", "at least one of them to simulate"));
     }

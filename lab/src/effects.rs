@@ -1,0 +1,91 @@
+//! The physics that a rig's nominal model can lack, one effect a file.
+//!
+//! An effect is a named term that is off at zero: it changes what the contact bears ([`Touch`]), what the drive has to
+//! overcome ([`Push`]), or what the force sensor makes of the force ([`Reading`]). It is written once and runs in two
+//! places: along a recorded motion, when `diagnose` asks what it would have changed, and in `palpate simulate`.
+//!
+//! To add one: write a file with a [`Card`] and an [`Effect`], and name it in [`ALL`]. Nothing else knows the list.
+
+mod card;
+mod contact;
+pub mod contact_law;
+mod drive;
+mod push;
+mod reading;
+mod resolved;
+mod scene;
+mod sensor;
+mod touch;
+
+pub use card::{Card, Form, Parameter, Place, Stage, key_of, slug};
+pub use contact_law::{Active, Along};
+pub use push::Push;
+pub use reading::Reading;
+pub use resolved::{Resolved, interval_key, resolve_all, to_table};
+pub use scene::{Abscissa, Scene, Start, Tones, Weight, geometric, linear};
+pub use touch::{Touch, gate, ramp};
+
+/// What an effect with a hidden state carries from one sample to the next; all zero at the start of a trial.
+pub type Memory = [f64; 6];
+
+/// Physics beyond the nominal model.
+pub trait Effect: Sync {
+    /// What it is called and what is known of it.
+    fn card(&self) -> &'static Card;
+
+    /// Where a search for its parameters starts, for form `form`, in the measures of `scene`.
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start>;
+
+    /// For a form that repeats along time or way: where to look for its frequency. Its `starts` are then empty.
+    fn tones(&self, _form: usize, _scene: &Scene) -> Option<Tones> {
+        None
+    }
+
+    /// Acts on the contact. `values` are in the order of the form's parameters.
+    fn touch(&self, _form: usize, _values: &[f64], _memory: &mut Memory, _touch: &mut Touch) {}
+
+    /// Acts on the drive.
+    fn push(&self, _form: usize, _values: &[f64], _memory: &mut Memory, _push: &mut Push) {}
+
+    /// Acts on the reading of the force sensor, over a whole trial.
+    fn read(&self, _form: usize, _values: &[f64], _reading: &mut Reading<'_>) {}
+}
+
+/// Every effect, in the order in which `palpate effects` lists them.
+pub static ALL: [&dyn Effect; 29] = [
+    &contact::nonlinear_stiffness::NonlinearStiffness,
+    &contact::layered_stiffness::LayeredStiffness,
+    &contact::hunt_crossley_damping::HuntCrossleyDamping,
+    &contact::quadratic_damping::QuadraticDamping,
+    &contact::stress_relaxation::StressRelaxation,
+    &contact::hysteresis::Hysteresis,
+    &contact::plastic_set::PlasticSet,
+    &contact::adhesion::Adhesion,
+    &contact::lost_motion::LostMotion,
+    &contact::time_varying_stiffness::TimeVaryingStiffness,
+    &contact::surface_motion::SurfaceMotion,
+    &contact::environment_mass::EnvironmentMass,
+    &drive::coulomb_friction::CoulombFriction,
+    &drive::stribeck_friction::StribeckFriction,
+    &drive::load_dependent_friction::LoadDependentFriction,
+    &drive::gravity_load::GravityLoad,
+    &drive::cogging::Cogging,
+    &drive::backlash::Backlash,
+    &drive::transmission_compliance::TransmissionCompliance,
+    &drive::effort_saturation::EffortSaturation,
+    &drive::effort_lag::EffortLag,
+    &sensor::force_bias::ForceBias,
+    &sensor::force_drift::ForceDrift,
+    &sensor::tool_inertia::ToolInertia,
+    &sensor::channel_delay::ChannelDelay,
+    &sensor::force_lag::ForceLag,
+    &sensor::force_saturation::ForceSaturation,
+    &sensor::force_gain::ForceGain,
+    &sensor::mains_hum::MainsHum,
+];
+
+/// The effect of that name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static dyn Effect> {
+    ALL.into_iter().find(|effect| effect.card().name == name)
+}

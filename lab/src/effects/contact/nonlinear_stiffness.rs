@@ -1,0 +1,73 @@
+//! A spring that is not straight.
+
+use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct NonlinearStiffness;
+
+const METRE: Word = Word::new("m", "rad");
+
+static CARD: Card = Card {
+    name: "nonlinear_stiffness",
+    place: Place::Contact,
+    stage: Stage::Law,
+    most: 1,
+    statement: "The deeper the tool goes, the stiffness itself changes",
+    forms: &[
+        Form {
+            name: "power_law",
+            equation: "spring = K reference_depth (x / reference_depth)^exponent; K is the secant stiffness at that depth",
+            parameters: &[
+                Parameter::new(
+                    "exponent",
+                    Word::same("1"),
+                    "1.5 for a sphere, 2 for a cone, 1 for a flat punch",
+                    0.2,
+                    6.0,
+                ),
+                Parameter::fixed("reference_depth", METRE, "depth at which K is stated"),
+            ],
+        },
+        Form {
+            name: "hardening",
+            equation: "spring = K x + cubic x^3",
+            parameters: &[Parameter::new(
+                "cubic",
+                Word::new("N/m^3", "N m/rad^3"),
+                "above zero it hardens, below it softens",
+                f64::NEG_INFINITY,
+                f64::INFINITY,
+            )],
+        },
+    ],
+    excited_by: "contacts that reach two or more depths",
+    resembles: &["layered_stiffness", "plastic_set"],
+    source: "H. Hertz (1881); I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47; Duffing's cubic spring",
+};
+
+impl Effect for NonlinearStiffness {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        if form == 0 {
+            let exponents = [0.6, 0.8, 1.2, 1.5, 2.0, 2.8, 4.0];
+            return exponents.iter().map(|exponent| Start::at(&[*exponent, scene.depth])).collect();
+        }
+        vec![Start::sized(&[0.1 * scene.stiffness / scene.depth.powi(2)], &[0])]
+    }
+
+    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+        let depth = touch.depth.abs();
+        if form == 0 {
+            let (exponent, reference) = (values[0], values[1]);
+            if reference > 0.0 && depth > 0.0 {
+                touch.spring = touch.stiffness * touch.depth * (depth / reference).powf(exponent - 1.0);
+            }
+        } else {
+            touch.spring += values[0] * touch.depth * depth * depth;
+        }
+    }
+}

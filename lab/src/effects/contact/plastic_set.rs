@@ -1,0 +1,71 @@
+//! A dent that stays.
+
+use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct PlasticSet;
+
+static CARD: Card = Card {
+    name: "plastic_set",
+    place: Place::Contact,
+    stage: Stage::Depth,
+    most: 1,
+    statement: "The surface keeps a dent: it springs back only part of the way",
+    forms: &[
+        Form {
+            name: "proportional",
+            equation: "F = K (x - dent), dent = set_ratio max x so far",
+            parameters: &[Parameter::new(
+                "set_ratio",
+                Word::same("1"),
+                "dent over the deepest depth so far",
+                0.0,
+                0.98,
+            )],
+        },
+        Form {
+            name: "yield",
+            equation: "F = K (x - dent), dent = set_ratio max(0, max x so far - yield_depth)",
+            parameters: &[
+                Parameter::new("set_ratio", Word::same("1"), "dent over the depth beyond yield", 0.0, 0.98),
+                Parameter::new(
+                    "yield_depth",
+                    Word::new("m", "rad"),
+                    "depth up to which all springs back",
+                    0.0,
+                    f64::INFINITY,
+                ),
+            ],
+        },
+    ],
+    excited_by: "a second contact after a deeper one; unloading from two depths",
+    resembles: &["hysteresis", "time_varying_stiffness", "stress_relaxation"],
+    source: "W. C. Oliver, G. M. Pharr, J. Mater. Res. 7 (1992) 1564; elastic unloading from the deepest point",
+};
+
+impl Effect for PlasticSet {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        let ratios = [0.02, 0.1, 0.3, 0.6, 0.85];
+        if form == 0 {
+            return ratios.iter().map(|ratio| Start::at(&[*ratio])).collect();
+        }
+        let depths = [0.3, 0.65].map(|part| part * scene.depth);
+        depths
+            .iter()
+            .flat_map(|depth| ratios.iter().skip(1).step_by(2).map(|ratio| Start::at(&[*ratio, *depth])))
+            .collect()
+    }
+
+    fn touch(&self, form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
+        let spared = if form == 0 { 0.0 } else { values[1] };
+        memory[0] = memory[0].max(touch.position);
+        let dent = values[0] * (memory[0] - spared).max(0.0);
+        touch.position -= dent;
+        touch.enter();
+    }
+}

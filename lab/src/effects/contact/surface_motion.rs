@@ -1,0 +1,81 @@
+//! A surface that moves by itself.
+
+use std::f64::consts::TAU;
+
+use crate::effects::{
+    Abscissa, Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight,
+};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct SurfaceMotion;
+
+const METRE: Word = Word::new("m", "rad");
+
+static CARD: Card = Card {
+    name: "surface_motion",
+    place: Place::Contact,
+    stage: Stage::Geometry,
+    most: 1,
+    statement: "What is touched moves by itself, as a breathing patient does",
+    forms: &[
+        Form {
+            name: "wave",
+            equation: "surface(t) = surface + sine sin(2 pi frequency t) + cosine cos(2 pi frequency t)",
+            parameters: &[
+                Parameter::new("sine", METRE, "part of the motion", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
+                Parameter::new("cosine", METRE, "part of the motion", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
+                Parameter::new("frequency", Word::same("Hz"), "of the motion", 0.0, f64::INFINITY).repeats(),
+            ],
+        },
+        Form {
+            name: "drift",
+            equation: "surface(t) = surface + drift t",
+            parameters: &[Parameter::new(
+                "drift",
+                Word::new("m/s", "rad/s"),
+                "speed of the surface, positive away from the tool",
+                f64::NEG_INFINITY,
+                f64::INFINITY,
+            )],
+        },
+    ],
+    excited_by: "long holds in contact at two depths",
+    resembles: &["mains_hum", "force_drift", "time_varying_stiffness"],
+    source: "a moving boundary; breathing at 0.2 to 0.3 Hz, heart beat at 1 Hz",
+};
+
+impl Effect for SurfaceMotion {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        let size = 0.01 * scene.depth;
+        if form == 0 || !scene.tells_time() { Vec::new() } else { vec![Start::sized(&[size / scene.duration], &[0])] }
+    }
+
+    fn tones(&self, form: usize, scene: &Scene) -> Option<Tones> {
+        // Half a turn a trial apart, up to a few Hz or what the analysis resolves: nothing falls between two of them.
+        let most = (8.0 * scene.duration).min(0.1 * scene.duration / scene.step).clamp(2.0, 400.0);
+        (form == 0 && scene.tells_time()).then(|| Tones {
+            abscissa: Abscissa::Time,
+            weight: Weight::Inside,
+            frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, (2.0 * most) as usize)],
+            size: 0.01 * scene.depth,
+            by_period: false,
+        })
+    }
+
+    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+        let (moved, rate) = if form == 0 {
+            let pulse = TAU * values[2];
+            let (sine, cosine) = (pulse * touch.time).sin_cos();
+            (values[0] * sine + values[1] * cosine, pulse * (values[0] * cosine - values[1] * sine))
+        } else {
+            (values[0] * touch.time, values[0])
+        };
+        touch.position -= moved;
+        touch.velocity -= rate;
+    }
+}

@@ -1,0 +1,102 @@
+//! A stiffness that is another one later.
+
+use std::f64::consts::TAU;
+
+use crate::effects::{
+    Abscissa, Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight, gate, geometric,
+    linear,
+};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct TimeVaryingStiffness;
+
+const CHANGE: Parameter = Parameter::new("change", Word::same("1"), "change of K over K at the start", -0.98, 50.0);
+const SECOND: Word = Word::same("s");
+
+static CARD: Card = Card {
+    name: "time_varying_stiffness",
+    place: Place::Contact,
+    stage: Stage::Depth,
+    most: 1,
+    statement: "The same depth does not give the same force later: the stiffness changes with time",
+    forms: &[
+        Form {
+            name: "drift",
+            equation: "K(t) = K (1 + drift t)",
+            parameters: &[Parameter::new(
+                "drift",
+                Word::same("1/s"),
+                "change of K over K in a second",
+                f64::NEG_INFINITY,
+                f64::INFINITY,
+            )],
+        },
+        Form {
+            name: "jump",
+            equation: "K(t) = K before instant, K (1 + change) after it",
+            parameters: &[CHANGE, Parameter::new("instant", SECOND, "since the trial began", 0.0, f64::INFINITY)],
+        },
+        Form {
+            name: "settling",
+            equation: "K(t) = K (1 + change (1 - exp(-t / time_constant)))",
+            parameters: &[CHANGE, Parameter::new("time_constant", SECOND, "of the change", 0.0, f64::INFINITY)],
+        },
+        Form {
+            name: "wave",
+            equation: "K(t) = K (1 + sine sin(2 pi frequency t) + cosine cos(2 pi frequency t))",
+            parameters: &[
+                Parameter::new("sine", Word::same("1"), "part of the change", -0.98, 0.98).each_trial(),
+                Parameter::new("cosine", Word::same("1"), "part of the change", -0.98, 0.98).each_trial(),
+                Parameter::new("frequency", Word::same("Hz"), "of the change", 0.0, f64::INFINITY).repeats(),
+            ],
+        },
+    ],
+    excited_by: "the same contact repeated, early and late",
+    resembles: &["force_drift", "stress_relaxation", "plastic_set", "surface_motion"],
+    source: "deflation, warming, softening: the paper's time-varying medium",
+};
+
+impl Effect for TimeVaryingStiffness {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        let end = scene.duration;
+        if !scene.tells_time() {
+            return Vec::new();
+        }
+        match form {
+            0 => vec![Start::sized(&[0.1 / end], &[0])],
+            1 => linear(0.04, 0.96, 24).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
+            2 => geometric(0.03, 1.0, 5).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn tones(&self, form: usize, scene: &Scene) -> Option<Tones> {
+        // Below one turn a trial it is a drift.
+        (form == 3 && scene.tells_time()).then(|| Tones {
+            abscissa: Abscissa::Time,
+            weight: Weight::Depth,
+            frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, 60)],
+            size: 0.1,
+            by_period: false,
+        })
+    }
+
+    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+        let time = touch.time;
+        touch.stiffness *= 1.0
+            + match form {
+                0 => values[0] * time,
+                1 => values[0] * gate(time - values[1], touch.blur),
+                2 => -values[0] * (-time / values[1].max(f64::MIN_POSITIVE)).exp_m1(),
+                _ => {
+                    let (sine, cosine) = (TAU * values[2] * time).sin_cos();
+                    values[0] * sine + values[1] * cosine
+                }
+            };
+    }
+}

@@ -1,0 +1,64 @@
+//! A ripple over the way.
+
+use std::f64::consts::TAU;
+
+use crate::effects::{
+    Abscissa, Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, Tones, Weight,
+};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct Cogging;
+
+const NEWTON: Word = Word::new("N", "N m");
+
+static CARD: Card = Card {
+    name: "cogging",
+    place: Place::Drive,
+    stage: Stage::Load,
+    most: 1,
+    statement: "The drive pulls and pushes in a pattern that repeats along the way",
+    forms: &[Form {
+        name: "first_harmonic",
+        equation: "load = sine sin(2 pi position / pitch) + cosine cos(2 pi position / pitch)",
+        parameters: &[
+            Parameter::new("sine", NEWTON, "part of the ripple", f64::NEG_INFINITY, f64::INFINITY),
+            Parameter::new("cosine", NEWTON, "part of the ripple", f64::NEG_INFINITY, f64::INFINITY),
+            Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY)
+                .comes_round(),
+        ],
+    }],
+    excited_by: "slow motion over many pitches",
+    resembles: &["gravity_load"],
+    source: "slot and magnet ripple of a motor, run-out of a gear",
+};
+
+impl Effect for Cogging {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, _form: usize, _scene: &Scene) -> Vec<Start> {
+        Vec::new()
+    }
+
+    fn tones(&self, _form: usize, scene: &Scene) -> Option<Tones> {
+        let way = scene.travel.1 - scene.travel.0;
+        // Half a turn over the whole way apart. Below one and a half turns it is a slope, and no pattern has been seen.
+        (way > 0.0).then(|| Tones {
+            abscissa: Abscissa::Position,
+            weight: Weight::Even,
+            frequencies: vec![(1.5 / way, 0.5 / way, 120)],
+            size: 0.02 * scene.effort,
+            by_period: true,
+        })
+    }
+
+    fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+        let turn = TAU / values[2].max(f64::MIN_POSITIVE);
+        let (sine, cosine) = (turn * push.position).sin_cos();
+        // What the smoothing filter leaves of a ripple that passes at this speed.
+        let left = (-0.5 * (turn * push.velocity * push.blur).powi(2)).exp();
+        push.resistance += left * (values[0] * sine + values[1] * cosine);
+    }
+}

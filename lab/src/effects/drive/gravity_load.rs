@@ -1,0 +1,66 @@
+//! Weight.
+
+use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct GravityLoad;
+
+const NEWTON: Word = Word::new("N", "N m");
+
+static CARD: Card = Card {
+    name: "gravity_load",
+    place: Place::Drive,
+    stage: Stage::Load,
+    most: 1,
+    statement: "The drive carries a weight",
+    forms: &[
+        Form {
+            name: "constant",
+            equation: "m a + b v + load = effort - F",
+            parameters: &[Parameter::new(
+                "load",
+                NEWTON,
+                "constant load, positive out of the environment",
+                f64::NEG_INFINITY,
+                f64::INFINITY,
+            )],
+        },
+        Form {
+            name: "by_angle",
+            equation: "m a + b v + sine sin(q) + cosine cos(q) + load = effort - F",
+            parameters: &[
+                Parameter::new("sine", NEWTON, "m g l where q = 0 hangs down", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::new("cosine", NEWTON, "m g l where q = 0 is level", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::new("load", NEWTON, "constant part", f64::NEG_INFINITY, f64::INFINITY),
+            ],
+        },
+    ],
+    excited_by: "rest or slow motion, over a wide angle where the rig turns",
+    resembles: &["force_bias", "coulomb_friction"],
+    source: "I. Newton (1687)",
+};
+
+impl Effect for GravityLoad {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        let size = 0.05 * scene.effort;
+        match form {
+            0 => vec![Start::sized(&[size], &[0])],
+            _ if scene.is_rotary => vec![Start::sized(&[size, size, size], &[0, 1, 2])],
+            _ => Vec::new(),
+        }
+    }
+
+    fn push(&self, form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+        push.resistance += if form == 0 {
+            values[0]
+        } else {
+            let (sine, cosine) = push.position.sin_cos();
+            values[0] * sine + values[1] * cosine + values[2]
+        };
+    }
+}

@@ -1,0 +1,41 @@
+//! Friction that grows with what the tool presses.
+
+use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct LoadDependentFriction;
+
+static CARD: Card = Card {
+    name: "load_dependent_friction",
+    place: Place::Drive,
+    stage: Stage::Friction,
+    most: 1,
+    statement: "The harder the tool presses, the more the drive rubs",
+    forms: &[Form {
+        name: "proportional",
+        equation: "friction = load_coefficient |F| sign(v); at rest it holds up to load_coefficient |F|",
+        parameters: &[Parameter::new("load_coefficient", Word::same("1"), "friction over contact force", 0.0, 0.95)],
+    }],
+    excited_by: "reversals of the velocity in contact at two or more forces, beside free ones",
+    resembles: &["coulomb_friction", "force_gain"],
+    source: "gear and guide friction under load, e.g. P. Hamon et al., IEEE IROS 2010, 2501",
+};
+
+impl Effect for LoadDependentFriction {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+        if !scene.has_force {
+            return Vec::new();
+        }
+        [0.02, 0.2].iter().map(|part| Start::sized(&[*part], &[0])).collect()
+    }
+
+    fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+        let level = values[0] * push.force.abs();
+        push.rub(level * push.direction(), level);
+    }
+}

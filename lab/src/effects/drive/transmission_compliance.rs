@@ -1,0 +1,61 @@
+//! A cable, belt or gear that gives.
+
+use crate::effects::drive::backlash::Link;
+use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct TransmissionCompliance;
+
+static CARD: Card = Card {
+    name: "transmission_compliance",
+    place: Place::Drive,
+    stage: Stage::Transmission,
+    most: 1,
+    statement: "Between motor and tool something gives: the two do not move as one",
+    forms: &[Form {
+        name: "two_masses",
+        equation: "m1 d2y/dt2 = effort - T, m1 = motor_share m, T = link_stiffness (y - x) + c (v_y - v), c = 2 damping_ratio sqrt(link_stiffness m1); (m - m1) a + b v = T - F",
+        parameters: &[
+            Parameter::new(
+                "link_stiffness",
+                Word::new("N/m", "N m/rad"),
+                "of cable, belt or gear, at the tool",
+                0.0,
+                f64::INFINITY,
+            )
+            .carries(),
+            Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8),
+            Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.005, 0.3),
+        ],
+    }],
+    excited_by: "quick changes of effort, frequencies near the resonance",
+    resembles: &["effort_lag", "backlash"],
+    source: "W. J. Book, J. Dyn. Syst. Meas. Control 115 (1993) 252: the two-mass drive",
+};
+
+impl Effect for TransmissionCompliance {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+        // Without a force sensor nothing but the noise of the acceleration stands against a hidden motor.
+        if !scene.has_force {
+            return Vec::new();
+        }
+        let mut starts = Vec::new();
+        for pulse in geometric(1.05 * scene.link_rate(), 5.0 * scene.link_rate(), 6) {
+            for share in [0.2, 0.6] {
+                starts.push(Start::at(&[scene.inertia * pulse * pulse, share, 0.05]));
+            }
+        }
+        starts
+    }
+
+    fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
+        let motor = values[1] * push.inertia;
+        let damping = 2.0 * values[2] * (values[0] * motor).max(0.0).sqrt();
+        Link { stiffness: values[0], damping, inertia: motor, gap: 0.0 }.carry(memory, push);
+    }
+}

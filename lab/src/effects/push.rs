@@ -1,0 +1,61 @@
+//! One instant of the drive, as effects see it and change it.
+
+/// One instant of the drive: inertia a + viscous v = effort - force - resistance.
+///
+/// Along a recording all of it is measured, and what is left of the balance is the residual; in a simulation the
+/// acceleration follows from it.
+#[derive(Debug, Clone, Copy)]
+pub struct Push {
+    /// Seconds since the trial began.
+    pub time: f64,
+    /// Seconds since the last instant, zero at the first.
+    pub step: f64,
+    /// Tool position, as the sensor counts it.
+    pub position: f64,
+    /// Its rate.
+    pub velocity: f64,
+    /// Its acceleration; zero in a simulation, where it is what is asked for.
+    pub acceleration: f64,
+    /// Width of the smoothing filter, s; zero in a simulation.
+    pub blur: f64,
+    /// What of the velocity is noise, m/s.
+    pub speed_noise: f64,
+    /// Whether the tool stands still as far as can be seen: 0 to 1.
+    pub still: f64,
+    /// Contact force on the tool, positive when the tool pushes.
+    pub force: f64,
+    /// What reaches the tool of the commanded effort.
+    pub effort: f64,
+    /// Inertia that the tool side moves.
+    pub inertia: f64,
+    /// Viscous friction.
+    pub viscous: f64,
+    /// What effects take from the effort.
+    pub resistance: f64,
+}
+
+impl Push {
+    /// What is left of the balance.
+    #[must_use]
+    pub fn rest(&self) -> f64 {
+        self.effort - self.inertia * self.acceleration - self.viscous * self.velocity - self.force - self.resistance
+    }
+
+    /// Mean of the sign of the velocity over the blur, and over what noise leaves undecided.
+    #[must_use]
+    pub fn direction(&self) -> f64 {
+        let width = (self.acceleration * self.blur).hypot(self.speed_noise);
+        if self.velocity.abs() >= 6.0 * width {
+            return if self.velocity == 0.0 { 0.0 } else { self.velocity.signum() };
+        }
+        libm::erf(self.velocity / width * std::f64::consts::FRAC_1_SQRT_2)
+    }
+
+    /// Adds dry friction that slides with `sliding` (signed) and holds up to `holding` where the tool stands still.
+    ///
+    /// Friction at rest is whatever the balance asks for, up to its limit: it is no function of the velocity.
+    pub fn rub(&mut self, sliding: f64, holding: f64) {
+        let held = self.rest().max(-holding.abs()).min(holding.abs());
+        self.resistance += (1.0 - self.still) * sliding + self.still * held;
+    }
+}

@@ -1,0 +1,154 @@
+//! The measures of a set of recordings, from which every search takes its scale: nothing is absolute.
+
+/// What the recordings and the nominal model fitted to them measure.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Greatest depth in contact, m or rad; zero without contact.
+    pub depth: f64,
+    /// Root mean square of the speed in contact, or of all the motion where nothing is touched.
+    pub speed: f64,
+    /// Root mean square of the acceleration.
+    pub acceleration: f64,
+    /// Greatest measured force in size.
+    pub force: f64,
+    /// Least and greatest measured force.
+    pub force_range: (f64, f64),
+    /// Greatest effort in size; zero where none is recorded.
+    pub effort: f64,
+    /// Least and greatest position.
+    pub travel: (f64, f64),
+    /// Length of the longest trial, s.
+    pub duration: f64,
+    /// Step of the analysis, s.
+    pub step: f64,
+    /// The same for the drive's balance, s.
+    pub drive_step: f64,
+    /// Seconds of one raw sample.
+    pub sample: f64,
+    /// Fitted stiffness.
+    pub stiffness: f64,
+    /// Fitted damping of the contact.
+    pub damping: f64,
+    /// Fitted inertia.
+    pub inertia: f64,
+    /// How often the tool went in: passes inwards of a fifth of the depth or more, over all trials.
+    pub visits: usize,
+    /// How often the tool left the surface, over all trials.
+    pub releases: usize,
+    /// Share of the time between the first and the last moment without contact.
+    pub free_span: f64,
+    /// Stiffness of the rig file.
+    pub given_stiffness: f64,
+    /// Inertia of the rig file.
+    pub given_inertia: f64,
+    /// Whether there is a force channel.
+    pub has_force: bool,
+    /// Whether there is an effort channel.
+    pub has_effort: bool,
+    /// Whether the rig turns.
+    pub is_rotary: bool,
+    /// Whether the contact pulls as well.
+    pub is_bilateral: bool,
+}
+
+impl Scene {
+    /// The slowest swing of a link that can be told, rad/s: twice the corner of the filter through which the drive is looked
+    /// at. A link that swings slower smooths the balance of its noise, and seems to explain it.
+    #[must_use]
+    pub fn link_rate(&self) -> f64 {
+        2.0 * std::f64::consts::TAU * 0.2 / self.drive_step
+    }
+
+    /// Whether early and late can be told from shallow and deep: only where the same depth was visited again.
+    #[must_use]
+    pub fn tells_time(&self) -> bool {
+        self.visits >= 3
+    }
+}
+
+/// Where a search starts.
+///
+/// Where `sizes` is not empty, the effect is linear in the parameters of those indices: it is tried with each of them
+/// alone at its value here, and their true values follow by linear least squares. Where it is empty, the values are one
+/// point of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start {
+    /// One value a parameter.
+    pub values: Vec<f64>,
+    /// Indices of the linear ones.
+    pub sizes: Vec<usize>,
+}
+
+impl Start {
+    /// A point of a grid.
+    #[must_use]
+    pub fn at(values: &[f64]) -> Self {
+        Self { values: values.to_vec(), sizes: Vec::new() }
+    }
+
+    /// A point that is linear in the parameters `sizes`.
+    #[must_use]
+    pub fn sized(values: &[f64], sizes: &[usize]) -> Self {
+        Self { values: values.to_vec(), sizes: sizes.to_vec() }
+    }
+}
+
+/// Along what a form repeats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Abscissa {
+    /// Seconds since the trial began.
+    Time,
+    /// Tool position.
+    Position,
+}
+
+/// Where a form that repeats shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weight {
+    /// Everywhere.
+    Even,
+    /// In contact.
+    Inside,
+    /// In contact, the more the deeper.
+    Depth,
+}
+
+/// The frequencies among which a form that repeats is searched: the residual's own spectrum says which are worth a trial.
+#[derive(Debug, Clone)]
+pub struct Tones {
+    /// Along what it repeats.
+    pub abscissa: Abscissa,
+    /// Where it shows.
+    pub weight: Weight,
+    /// Equally spaced turns a unit of the abscissa: first, spacing, count.
+    pub frequencies: Vec<(f64, f64, usize)>,
+    /// Size of each part of the wave.
+    pub size: f64,
+    /// Whether the last parameter is the period and not the frequency.
+    pub by_period: bool,
+}
+
+impl Tones {
+    /// Where the search starts at `frequency`.
+    #[must_use]
+    pub fn start(&self, frequency: f64) -> Start {
+        let last = if self.by_period { frequency.recip() } else { frequency };
+        Start::sized(&[self.size, self.size, last], &[0, 1])
+    }
+}
+
+/// `count` values from `low` to `high`, each the same factor above the last; none where the range is empty.
+#[must_use]
+pub fn geometric(low: f64, high: f64, count: usize) -> Vec<f64> {
+    if !(low > 0.0 && high >= low) {
+        return Vec::new();
+    }
+    let ratio = high / low;
+    (0..count).map(|at| low * ratio.powf(at as f64 / (count.max(2) - 1) as f64)).collect()
+}
+
+/// `count` values from `low` to `high` in equal steps.
+#[must_use]
+pub fn linear(low: f64, high: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|at| low + (high - low) * at as f64 / (count.max(2) - 1) as f64).collect()
+}

@@ -1,0 +1,37 @@
+//! A force that is smoothed before it is written down.
+
+use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start, geometric};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct ForceLag;
+
+static CARD: Card = Card {
+    name: "force_lag",
+    place: Place::Sensor,
+    stage: Stage::Response,
+    most: 1,
+    statement: "The force sensor follows slowly, as behind a low-pass filter",
+    forms: &[Form {
+        name: "first_order",
+        equation: "time_constant d(reading)/dt = F - reading",
+        parameters: &[Parameter::new("time_constant", Word::same("s"), "of the low-pass", 0.0, f64::INFINITY)],
+    }],
+    excited_by: "touching at speed; two or more frequencies in contact",
+    resembles: &["channel_delay", "stress_relaxation", "tool_inertia"],
+    source: "anti-alias filter of an amplifier",
+};
+
+impl Effect for ForceLag {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+        geometric(0.3 * scene.sample, 30.0 * scene.step, 8).iter().map(|time| Start::at(&[*time])).collect()
+    }
+
+    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+        reading.low_pass(values[0]);
+    }
+}

@@ -1,0 +1,68 @@
+//! A tone that is always there.
+
+use std::f64::consts::TAU;
+
+use crate::effects::{Abscissa, Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start, Tones, Weight};
+use crate::rig::Word;
+
+/// See [`CARD`].
+pub struct MainsHum;
+
+const NEWTON: Word = Word::new("N", "N m");
+
+static CARD: Card = Card {
+    name: "mains_hum",
+    place: Place::Sensor,
+    stage: Stage::Zero,
+    most: 1,
+    statement: "The force reading carries a tone, in contact and out of it",
+    forms: &[Form {
+        name: "tone",
+        equation: "reading = F + sine sin(2 pi frequency t) + cosine cos(2 pi frequency t)",
+        parameters: &[
+            Parameter::new("sine", NEWTON, "part of the tone", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
+            Parameter::new("cosine", NEWTON, "part of the tone", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
+            Parameter::new("frequency", Word::same("Hz"), "of the tone", 0.0, f64::INFINITY),
+        ],
+    }],
+    excited_by: "nothing: it is there at rest",
+    resembles: &["surface_motion"],
+    source: "50 or 60 Hz mains and what it beats with",
+};
+
+impl Effect for MainsHum {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn starts(&self, _form: usize, _scene: &Scene) -> Vec<Start> {
+        Vec::new()
+    }
+
+    fn tones(&self, _form: usize, scene: &Scene) -> Option<Tones> {
+        // The mains keep their frequency to a few tenths of a per cent; over a long trial that is several turns.
+        let apart = 0.25 / scene.duration;
+        let band = |mains: f64| {
+            let most = (0.004 * mains / apart).ceil().clamp(2.0, 60.0);
+            (mains - most * apart, apart, 2 * most as usize + 1)
+        };
+        let frequencies: Vec<_> =
+            [50.0, 60.0].into_iter().filter(|mains| *mains < 0.42 / scene.step).map(band).collect();
+        let size = 0.01 * scene.force;
+        (!frequencies.is_empty()).then_some(Tones {
+            abscissa: Abscissa::Time,
+            weight: Weight::Even,
+            frequencies,
+            size,
+            by_period: false,
+        })
+    }
+
+    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+        let left = reading.passes(values[2]);
+        for (at, force) in reading.force.iter_mut().enumerate() {
+            let (sine, cosine) = (TAU * values[2] * (reading.start + at as f64 * reading.step)).sin_cos();
+            *force += left * (values[0] * sine + values[1] * cosine);
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! From the commanded effort to the acceleration of the tool, through the effects of the drive.
+
+use crate::effects::{Active, Memory, Place, Push, Stage};
+use crate::rig::Drive;
+
+/// Rounding of a balance, in units of its largest term: what is left below it is nothing.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+struct Term<'a> {
+    active: Active<'a>,
+    memory: Memory,
+    kept: Memory,
+}
+
+/// The drive's effects and what they carry from one instant to the next.
+pub struct Chain<'a> {
+    drive: Drive,
+    terms: Vec<Term<'a>>,
+}
+
+/// One instant of the drive.
+#[derive(Debug, Clone, Copy)]
+pub struct Instant {
+    /// Seconds since the trial began.
+    pub time: f64,
+    /// Seconds since the last instant.
+    pub step: f64,
+    /// Position of the tool.
+    pub position: f64,
+    /// Its rate.
+    pub velocity: f64,
+    /// What is commanded.
+    pub effort: f64,
+}
+
+/// What the drive does to the tool.
+#[derive(Debug, Clone, Copy)]
+pub struct Pull {
+    /// Of the tool.
+    pub acceleration: f64,
+    /// Whether dry friction takes part in it.
+    pub rubs: bool,
+}
+
+impl<'a> Chain<'a> {
+    /// Those of `actives` that act in the drive, in the order of their stages.
+    pub fn new(drive: Drive, actives: &[Active<'a>]) -> Self {
+        let mut terms: Vec<_> = actives
+            .iter()
+            .filter(|active| active.effect.card().place == Place::Drive)
+            .map(|active| Term { active: *active, memory: Memory::default(), kept: Memory::default() })
+            .collect();
+        terms.sort_by_key(|term| term.active.stage());
+        Self { drive, terms }
+    }
+
+    /// Marks this instant, for [`Chain::rewind`].
+    pub fn keep(&mut self) {
+        self.terms.iter_mut().for_each(|term| term.kept = term.memory);
+    }
+
+    /// Takes back every step since the last [`Chain::keep`].
+    pub fn rewind(&mut self) {
+        self.terms.iter_mut().for_each(|term| term.memory = term.kept);
+    }
+
+    /// The acceleration of the tool where the contact bears `force`.
+    ///
+    /// A tool that stands still is held by friction as long as friction can: its acceleration is then exactly zero.
+    pub fn pull(&mut self, at: Instant, force: f64) -> Pull {
+        let mut push = Push {
+            time: at.time,
+            step: at.step,
+            position: at.position,
+            velocity: at.velocity,
+            acceleration: 0.0,
+            blur: 0.0,
+            speed_noise: 0.0,
+            still: f64::from(at.velocity == 0.0),
+            force,
+            effort: at.effort,
+            inertia: self.drive.inertia,
+            viscous: self.drive.viscous,
+            resistance: 0.0,
+        };
+        let (loads, frictions) = {
+            let at = self.terms.partition_point(|term| term.active.stage() < Stage::Friction);
+            self.terms.split_at_mut(at)
+        };
+        let act = |terms: &mut [Term<'_>], push: &mut Push| {
+            for term in terms {
+                term.active.effect.push(term.active.form, term.active.values, &mut term.memory, push);
+            }
+        };
+        act(loads, &mut push);
+        let free = push.rest();
+        act(frictions, &mut push);
+        let rest = push.rest();
+        let rubs = rest != free;
+        let size = push.effort.abs() + push.force.abs() + push.resistance.abs();
+        let is_held = rubs && push.still > 0.0 && rest.abs() <= ROUNDING * size;
+        Pull { acceleration: if is_held { 0.0 } else { rest / push.inertia }, rubs }
+    }
+}

@@ -1,0 +1,131 @@
+//! Effects of the contact along a led motion, against closed forms.
+
+use crate::bench::{DAMPING, MASS, RATE, REFERENCE, STIFFNESS, apart, close, force, largest, rig, run, with};
+use palpate_lab::rig::{Contact, Drive, Reference, Rig};
+
+/// Row, depth and rate of the rows in contact.
+fn inside(rig: &Rig) -> impl Iterator<Item = (usize, f64, f64)> {
+    let reference = rig.reference.unwrap();
+    let rows = (rig.simulation.duration_s * RATE) as usize;
+    (0..rows)
+        .map(move |row| (row, reference.at(row as f64 / RATE)))
+        .filter(|(_, (x, _))| *x > 0.0)
+        .map(|(row, at)| (row, at.0, at.1))
+}
+
+#[test]
+fn damping_that_grows_with_depth_is_its_equation() {
+    let rig = with(&rig(REFERENCE, false), "[[effect]]\nname = \"hunt_crossley_damping\"\nalpha_n_s_m2 = 1200\n");
+    let recording = run(&rig);
+    let mut most = 0.0f64;
+    for (row, x, v) in inside(&rig) {
+        let expected = (STIFFNESS * x + (DAMPING + 1200.0 * x) * v).max(0.0);
+        close(force(&recording)[row], expected, 1e-12, "force");
+        most = most.max((1200.0 * x * v).abs());
+    }
+    assert!(most > 0.5, "{most} N of it");
+}
+
+#[test]
+fn a_maxwell_branch_relaxes_as_its_closed_form() {
+    let reference = Reference { period_s: 4.0, contact_s: 3.0, sine_amplitude: 0.0, ..REFERENCE };
+    let (branch, time) = (150.0, 0.4);
+    let table = format!(
+        "[[effect]]\nname = \"stress_relaxation\"\nbranch_stiffness_n_m = {branch}\nrelaxation_time_s = {time}\n"
+    );
+    let recording = run(&with(&rig(reference, false), &table));
+    let extra = |row: usize| {
+        let (x, v) = reference.at(row as f64 / RATE);
+        force(&recording)[row] - STIFFNESS * x - DAMPING * v
+    };
+    // z(t) = branch x integral of v(s) exp(-(t - s) / time) over the time in contact, by the midpoint rule.
+    let (end, fine) = (1.5, 1e-5);
+    let expected: f64 = (0..(end / fine) as usize)
+        .map(|at| (at as f64 + 0.5) * fine)
+        .map(|s| (reference.at(s), s))
+        .filter(|((x, _), _)| *x > 0.0)
+        .map(|((_, v), s)| branch * v * (-(end - s) / time).exp() * fine)
+        .sum();
+    assert!(expected > 0.3);
+    close(extra(1500), expected, 1e-4 * expected, "what has built up");
+    // Held: nothing but exp(-t / time) is left.
+    close(extra(2300) / extra(1500), (-0.8f64 / time).exp(), 1e-6, "what is left 0.8 s later");
+}
+
+#[test]
+fn a_dent_stays_and_is_as_deep_as_it_says() {
+    let rig = with(&rig(REFERENCE, false), "[[effect]]\nname = \"plastic_set\"\nset_ratio = 0.4\n");
+    let recording = run(&rig);
+    let deepest = (0..200_000).fold(0.0f64, |most, at| most.max(REFERENCE.at(f64::from(at) * 1e-5).0));
+    let dent = 0.4 * deepest;
+    let mut missed = 0;
+    for (row, x, v) in inside(&rig).filter(|(row, x, _)| *row > 2500 && *x <= 0.99 * deepest) {
+        let expected = if x > dent { (STIFFNESS * (x - dent) + DAMPING * v).max(0.0) } else { 0.0 };
+        // The deepest point falls between two instants: a nanometre of dent.
+        close(force(&recording)[row], expected, 3e-7, "second contact");
+        missed += usize::from(x < dent);
+    }
+    assert!(missed > 20, "{missed} rows within the dent");
+}
+
+#[test]
+fn what_sticks_pulls_on_release_and_never_before() {
+    let table = "[[effect]]\nname = \"adhesion\"\npull_off_force_n = 0.3\nrelease_height_m = 0.002\n";
+    let rig = with(&rig(REFERENCE, false), table);
+    let recording = run(&rig);
+    let pulls: Vec<_> = (0..4000).filter(|&row| force(&recording)[row] < 0.0).collect();
+    assert!(pulls.len() > 10, "{} rows", pulls.len());
+    for row in pulls {
+        let (x, v) = REFERENCE.at(row as f64 / RATE);
+        assert!(v < 0.0 && x > -0.002 - 1e-9 && row > 1000, "row {row}: {x} m, {v} m/s");
+        assert!(force(&recording)[row] >= -0.3);
+    }
+    let least = force(&recording).iter().copied().fold(0.0, f64::min);
+    close(least, -0.3, 1e-12, "greatest pull");
+}
+
+#[test]
+fn play_keeps_the_force_until_it_is_taken_up() {
+    let play = 5e-4;
+    let table = format!("[[effect]]\nname = \"lost_motion\"\nplay_m = {play}\n");
+    let mut rig = with(&rig(REFERENCE, false), &table);
+    rig.contact = rig.contact.map(|contact| Contact { damping: 0.0, ..contact });
+    let recording = run(&rig);
+    let (x, f) = (&recording.position, force(&recording));
+    let mut reversals = 0;
+    for row in 1100..1900 {
+        if x[row] > x[row - 1] && x[row] >= x[row + 1] && x[row] > 5e-3 {
+            reversals += 1;
+            let back = (row..row + 200).take_while(|&at| x[row] - x[at] < 0.99 * play).last().unwrap();
+            assert!(back > row + 3);
+            // The tip stays where the true crest between two instants put it.
+            (row + 1..=back).for_each(|at| assert_eq!(f[at].to_bits(), f[row + 1].to_bits(), "row {at}"));
+            close(f[row], STIFFNESS * (x[row] - 0.5 * play), 1e-4, "at the crest");
+            assert!(f[back + 40] < f[row] - 0.01, "the force falls once the play is taken up");
+        }
+    }
+    assert!(reversals >= 2, "{reversals}");
+}
+
+#[test]
+fn a_mass_that_is_carried_along_is_a_mass() {
+    let table = "[[effect]]\nname = \"environment_mass\"\nmoved_mass_kg = 2.0\n";
+    // Led: F = K x + B v + m a, in the middle of a contact.
+    let led = with(&rig(REFERENCE, false), table);
+    let recording = run(&led);
+    for (row, x, v) in inside(&led).filter(|(row, ..)| (1200..1900).contains(row)) {
+        let time = row as f64 / RATE;
+        let a = (REFERENCE.at(time + 1e-5).1 - REFERENCE.at(time - 1e-5).1) / 2e-5;
+        let expected = (STIFFNESS * x + DAMPING * v + 2.0 * a).max(0.0);
+        close(force(&recording)[row], expected, 1e-5, "led");
+    }
+    // Driven and clamped: it moves as if the drive were as much heavier, and it is heavier than the drive.
+    let mut clamped = rig(REFERENCE, true);
+    clamped.contact = clamped.contact.map(|contact| Contact { bilateral: true, ..contact });
+    let mut heavy = clamped.clone();
+    heavy.drive = heavy.drive.map(|drive| Drive { inertia: MASS + 2.0, ..drive });
+    let (carried, heavy) = (run(&with(&clamped, table)), run(&heavy));
+    assert!(largest(&heavy.position) > 5e-3);
+    let error = apart(&heavy.position, &carried.position);
+    assert!(error < 1e-6, "{error:.1e}");
+}

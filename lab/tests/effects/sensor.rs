@@ -1,0 +1,46 @@
+//! Effects of the force sensor.
+
+use crate::bench::{DAMPING, RATE, REFERENCE, STIFFNESS, close, force, rig, run, with};
+use palpate_lab::rig::{Rig, Sensors};
+
+#[test]
+fn a_delay_of_whole_rows_is_a_shifted_trace_and_the_motion_is_the_nominal_one() {
+    let rig = rig(REFERENCE, true);
+    let nominal = run(&rig);
+    let late = run(&with(&rig, "[[effect]]\nname = \"channel_delay\"\ndelay_s = 0.003\n"));
+    assert_eq!((&late.position, &late.effort), (&nominal.position, &nominal.effort));
+    for row in 3..4000 {
+        close(force(&late)[row], force(&nominal)[row - 3], 1e-12, "three rows late");
+    }
+}
+
+#[test]
+fn a_delay_of_a_part_of_a_row_is_the_force_of_that_instant() {
+    let late = run(&with(&rig(REFERENCE, false), "[[effect]]\nname = \"channel_delay\"\ndelay_s = 0.0004\n"));
+    for row in 1200..1900 {
+        let (x, v) = REFERENCE.at(row as f64 / RATE - 0.0004);
+        close(force(&late)[row], STIFFNESS * x + DAMPING * v, 1e-6, "0.4 ms late");
+    }
+}
+
+#[test]
+fn what_is_beyond_the_sensor_is_felt_in_free_motion_too() {
+    let feels = run(&with(&rig(REFERENCE, false), "[[effect]]\nname = \"tool_inertia\"\nbeyond_mass_kg = 0.1\n"));
+    let pulse = std::f64::consts::TAU * REFERENCE.sine_frequency_hz;
+    for row in 1..750 {
+        let a = -REFERENCE.sine_amplitude * pulse * pulse * (pulse * row as f64 / RATE).sin();
+        close(force(&feels)[row], 0.1 * a, 1e-6, "free motion");
+    }
+}
+
+#[test]
+fn effects_come_before_noise_and_steps_and_the_chance_stays_the_same() {
+    let noisy = Sensors { force_resolution: Some(0.05), force_noise: Some(0.09), ..rig(REFERENCE, true).sensors };
+    let rig = Rig { sensors: noisy, ..rig(REFERENCE, true) };
+    let nominal = run(&rig);
+    let biased = run(&with(&rig, "[[effect]]\nname = \"force_bias\"\nbias_n = 1.0\n"));
+    for (one, other) in force(&nominal).iter().zip(force(&biased)) {
+        close(other - one, 1.0, 1e-12, "bias");
+        close(other / 0.05, (other / 0.05).round(), 1e-9, "whole steps");
+    }
+}
