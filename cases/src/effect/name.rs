@@ -1,0 +1,98 @@
+//! Every effect by name, and where it shows.
+
+use serde::Serialize;
+
+/// Where an effect acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Acts {
+    /// In what the surface answers.
+    Contact,
+    /// Between the motor and the tool: it shows in the effort alone.
+    Drive,
+    /// In the force sensor.
+    Sensor,
+}
+
+/// One effect that a case can hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Known {
+    /// Its name.
+    pub name: &'static str,
+    /// Where it acts.
+    pub acts: Acts,
+    /// Among the effects that a diagnosis can name.
+    pub listed: bool,
+    /// It is there, and means the same, where the tool is clamped to its environment.
+    pub bilateral: bool,
+    /// It shows in the balance of the drive or not at all.
+    pub needs_effort: bool,
+}
+
+const fn contact(name: &'static str, bilateral: bool) -> Known {
+    Known { name, acts: Acts::Contact, listed: true, bilateral, needs_effort: false }
+}
+
+const fn drive(name: &'static str) -> Known {
+    Known { name, acts: Acts::Drive, listed: true, bilateral: true, needs_effort: true }
+}
+
+const fn sensor(name: &'static str) -> Known {
+    Known { name, acts: Acts::Sensor, listed: true, bilateral: true, needs_effort: false }
+}
+
+const fn outside(name: &'static str, acts: Acts) -> Known {
+    let bilateral = !matches!(acts, Acts::Contact);
+    Known { name, acts, listed: false, bilateral, needs_effort: matches!(acts, Acts::Drive) }
+}
+
+/// All of them.
+pub const ALL: [Known; 40] = [
+    contact("nonlinear_stiffness", true),
+    contact("layered_stiffness", false),
+    contact("hunt_crossley_damping", false),
+    contact("quadratic_damping", true),
+    contact("stress_relaxation", true),
+    contact("hysteresis", true),
+    contact("plastic_set", false),
+    contact("adhesion", false),
+    contact("lost_motion", true),
+    contact("time_varying_stiffness", true),
+    contact("surface_motion", true),
+    contact("environment_mass", true),
+    drive("coulomb_friction"),
+    drive("stribeck_friction"),
+    drive("load_dependent_friction"),
+    drive("gravity_load"),
+    drive("cogging"),
+    drive("backlash"),
+    drive("transmission_compliance"),
+    drive("effort_saturation"),
+    drive("effort_lag"),
+    Known { needs_effort: true, ..sensor("force_gain") },
+    // Clamped to a spring, a bias of the force is a shift of the spring.
+    Known { bilateral: false, ..sensor("force_bias") },
+    sensor("force_drift"),
+    sensor("tool_inertia"),
+    sensor("channel_delay"),
+    sensor("force_lag"),
+    sensor("force_saturation"),
+    sensor("mains_hum"),
+    outside("force_resonance", Acts::Sensor),
+    outside("effort_crosstalk", Acts::Sensor),
+    outside("thermal_wander", Acts::Sensor),
+    outside("signed_damping", Acts::Drive),
+    outside("sticky_spots", Acts::Drive),
+    outside("outside_pushes", Acts::Drive),
+    outside("buckling", Acts::Contact),
+    outside("heartbeat", Acts::Contact),
+    outside("reflex", Acts::Contact),
+    outside("periodic_force_error", Acts::Sensor),
+    outside("loose_contact", Acts::Sensor),
+];
+
+/// The effect `name`.
+#[must_use]
+pub fn known(name: &str) -> Option<&'static Known> {
+    ALL.iter().find(|known| known.name == name)
+}

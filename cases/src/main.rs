@@ -1,0 +1,113 @@
+//! `cases`: writes recordings with concealed physics, and the answers beside them.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::{Parser, ValueEnum};
+use palpate_cases::reference::Kind as Reference;
+use palpate_cases::sensors::Grade;
+use palpate_cases::{What, Wish, draw};
+
+/// Recordings of simulated rigs with concealed physics
+#[derive(Debug, Parser)]
+#[command(name = "cases", version)]
+struct Cli {
+    /// Seed of all cases
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Number of cases
+    #[arg(long, default_value_t = 10)]
+    count: u64,
+    /// What each conceals; drawn where left out
+    #[arg(long)]
+    kind: Option<Kind>,
+    /// The effect that each conceals; two, with a comma between them, make a pair
+    #[arg(long, value_delimiter = ',')]
+    effect: Vec<String>,
+    /// Strength over the floor of the sensor; 0.1 to 10 at random where left out
+    #[arg(long)]
+    strength: Option<f64>,
+    /// Sensors; drawn where left out
+    #[arg(long)]
+    sensors: Option<Sensors>,
+    /// Trajectories; drawn where left out
+    #[arg(long)]
+    reference: Option<Trajectories>,
+    /// Leave the effort out
+    #[arg(long)]
+    no_effort: bool,
+    /// Only linear rigs at the size of a bench
+    #[arg(long)]
+    bench: bool,
+    /// Folder to write to
+    #[arg(long)]
+    out: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Kind {
+    None,
+    Single,
+    Pair,
+    Outside,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Sensors {
+    Coarse,
+    Fine,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Trajectories {
+    Rich,
+    Poor,
+}
+
+impl Cli {
+    fn wish(&self) -> Wish {
+        Wish {
+            what: self.what(),
+            sensors: self.sensors.map(|grade| match grade {
+                Sensors::Coarse => Grade::Coarse,
+                Sensors::Fine => Grade::Fine,
+            }),
+            reference: self.reference.map(|kind| match kind {
+                Trajectories::Rich => Reference::Rich,
+                Trajectories::Poor => Reference::Poor,
+            }),
+            effort: self.no_effort.then_some(false),
+            rotary: self.bench.then_some(false),
+            bench: self.bench.then_some(true),
+            ..Wish::default()
+        }
+    }
+
+    fn what(&self) -> Option<What> {
+        let strength = self.strength;
+        match (self.effect.as_slice(), self.kind) {
+            ([one], _) => Some(What::single(one, strength)),
+            ([one, other, ..], _) => Some(What::Pair { names: Some([one.clone(), other.clone()]), strength }),
+            ([], Some(Kind::None)) => Some(What::Nothing),
+            ([], Some(Kind::Single)) => Some(What::Single { name: None, strength }),
+            ([], Some(Kind::Pair)) => Some(What::Pair { names: None, strength }),
+            ([], Some(Kind::Outside)) => Some(What::Outside { name: None, strength }),
+            ([], None) => strength.map(|_| What::Single { name: None, strength }),
+        }
+    }
+}
+
+fn main() -> Result<()> {
+    let cli = Cli::parse();
+    let wish = cli.wish();
+    let mut truths = Vec::new();
+    for index in 0..cli.count {
+        let case = draw(cli.seed, index, &wish)?;
+        case.write(&cli.out.join(format!("case-{index:04}")))?;
+        truths.push(case.truth);
+    }
+    std::fs::create_dir_all(&cli.out).with_context(|| format!("cannot make {}", cli.out.display()))?;
+    let path = cli.out.join("truth.json");
+    let text = serde_json::to_string_pretty(&truths)?;
+    std::fs::write(&path, text + "\n").with_context(|| format!("cannot write {}", path.display()))
+}

@@ -1,0 +1,100 @@
+//! Whether strength means what it says, and sensors leave what they say.
+
+use palpate_cases::chance::{Stream, stream};
+use palpate_cases::effect::delay::ChannelDelay;
+use palpate_cases::effect::{Shape, name};
+use palpate_cases::nominal::{Control, Nominal};
+use palpate_cases::physics::Physics;
+use palpate_cases::reference::{self, Kind};
+use palpate_cases::sensors::{Grade, Sensors};
+use palpate_cases::simulate::{Encoder, PERIOD, STEPS, Setup, Track, run};
+use palpate_cases::strength::residual;
+use palpate_cases::{What, Wish, draw};
+
+const RIG: Nominal =
+    Nominal { mass: 0.8, viscous: 2.0, stiffness: 900.0, damping: 8.0, surface: -0.002, bilateral: false };
+const CONTROL: Control = Control { proportional: 1200.0, derivative: 30.0, filter_hz: 100.0 };
+
+fn trial(put: impl Fn(&mut Physics)) -> Track {
+    let depths = reference::depths(Kind::Rich, &RIG, 0.006, &mut stream(1, 0, Stream::Reference));
+    let mut physics = Physics::new(RIG, 0, PERIOD / STEPS as f64);
+    put(&mut physics);
+    let encoder = Encoder { step: 5e-6, offset: 2e-6 };
+    let setup = Setup { nominal: RIG, control: CONTROL, encoder, steps: STEPS };
+    run(&setup, physics, &reference::lead(&depths, &RIG, &CONTROL))
+}
+
+#[test]
+fn wrong_values_are_taken_up() {
+    let wrong = Nominal {
+        mass: 1.0,
+        viscous: 1.0,
+        stiffness: 1100.0,
+        damping: 6.0,
+        surface: RIG.surface + 3e-4,
+        bilateral: false,
+    };
+    let left = residual(&[trial(|_| ())], &wrong);
+    assert!(left.force < 1e-4 && left.effort < 1e-3, "{left:?}");
+}
+
+#[test]
+fn a_hum_is_as_strong_as_its_amplitude_says() {
+    for index in 0..4 {
+        let what = What::single("mains_hum", Some(4.0));
+        let truth = draw(31, index, &Wish { what: Some(what), effort: Some(false), ..Wish::default() }).unwrap().truth;
+        if truth.effects[0].form == "a sine" {
+            let expected = truth.effects[0].parameters[0].value / 2f64.sqrt() / truth.floor;
+            assert!((truth.strength / expected - 1.0).abs() < 0.01, "{} {expected}", truth.strength);
+            return;
+        }
+    }
+    panic!("no plain sine among four");
+}
+
+#[test]
+fn a_delayed_force_is_the_force_some_rows_earlier() {
+    let (plain, late) = (trial(|_| ()), trial(|physics| ChannelDelay.put(0.003, physics)));
+    assert_eq!(plain.position, late.position);
+    let worst = plain.force.iter().zip(&late.force[3..]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(worst < 1e-9, "{worst}");
+}
+
+#[test]
+fn the_sensors_leave_their_floor() {
+    for grade in [Grade::Coarse, Grade::Fine] {
+        let (sensors, mut chance) = (Sensors::new(grade), stream(2, 0, Stream::Noise));
+        let count = 40_000;
+        let sum: f64 = (0..count)
+            .map(|at| {
+                let force = f64::from(at) * 1.2345e-4;
+                (sensors.read_force(force, &mut chance) - force).powi(2)
+            })
+            .sum();
+        let rms = (sum / f64::from(count)).sqrt();
+        assert!((rms / sensors.floor() - 1.0).abs() < 0.02, "{rms} {}", sensors.floor());
+    }
+    let encoder = Encoder { step: 1e-4, offset: 3e-5 };
+    assert_eq!((encoder.read(1.9e-5), encoder.read(2.1e-5)), (0.0, 1e-4));
+}
+
+#[test]
+fn a_rich_trial_goes_where_it_is_led_and_leaves_the_surface_between() {
+    let track = trial(|_| ());
+    let depths = reference::depths(Kind::Rich, &RIG, 0.006, &mut stream(1, 0, Stream::Reference));
+    let strayed = track.position.iter().zip(&depths).map(|(x, depth)| (x - RIG.surface - depth).powi(2));
+    let strayed = (strayed.sum::<f64>() / depths.len() as f64).sqrt();
+    assert!(strayed < 3e-4, "{strayed}");
+    let touching = track.force.iter().filter(|force| **force > 0.0).count() as f64 / depths.len() as f64;
+    assert!((0.4..0.8).contains(&touching), "{touching}");
+    let touches = track.force.windows(2).filter(|two| two[0] == 0.0 && two[1] > 0.0).count();
+    assert!(touches >= 8, "{touches}");
+}
+
+#[test]
+fn every_name_outside_of_the_list_has_a_shape() {
+    for known in name::ALL.iter().filter(|known| !known.listed) {
+        let wish = Wish { what: Some(What::single(known.name, Some(0.0))), ..Wish::default() };
+        assert!(draw(33, 0, &wish).is_ok(), "{}", known.name);
+    }
+}
