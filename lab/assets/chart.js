@@ -76,8 +76,9 @@ const chart = (() => {
     return [least > low - slack ? Math.min(low, least) : low, greatest < high + slack ? Math.max(high, greatest) : high];
   }
 
-  function everything({ lines, reference }, from, to) {
-    const [low, high] = extent(lines, from, to);
+  function everything({ lines, reference, corridor }, from, to) {
+    const edges = corridor ? [{ values: corridor.low }, { values: corridor.high }] : [];
+    const [low, high] = extent([...lines, ...edges], from, to);
     return reference == null ? [low, high] : [Math.min(low, reference), Math.max(high, reference)];
   }
 
@@ -142,7 +143,8 @@ const chart = (() => {
     ctx.restore();
   }
 
-  // `spec`: title, unit, lines, reference and its words, last; `hooks`: what to tell about the cursor and the zoom.
+  // `spec`: title, unit, lines, reference and its words, a corridor behind the lines, height, last; `shared`: time,
+  // width, what to shade and the key of the pictures that move together; `hooks`: whom to tell of cursor and zoom.
   function draw(spec, shared, hooks, place) {
     const series = [{}];
     const data = [shared.time];
@@ -155,13 +157,19 @@ const chart = (() => {
       series.push(edge, { ...edge });
       bands.push({ series: [series.length - 2, series.length - 1], fill: line.stroke + "40" });
     }
+    if (spec.corridor) {
+      const edge = { stroke: "transparent", width: 0, points: { show: false } };
+      data.push(spec.corridor.high, spec.corridor.low);
+      series.push(edge, { ...edge });
+      bands.push({ series: [series.length - 2, series.length - 1], fill: spec.corridor.fill });
+    }
     // The best is drawn last, over the others.
     for (const line of [...spec.lines].sort((a, b) => Boolean(a.best) - Boolean(b.best))) {
       data.push(line.values);
       series.push({ stroke: line.stroke, width: line.best ? 2 : 1.4, dash: line.dash, points: { show: false } });
     }
     const plot = new uPlot({
-      width: shared.width, height: spec.last ? 238 : 218, series, bands,
+      width: shared.width, height: (spec.height ?? 218) + (spec.last ? 20 : 0), series, bands,
       axes: axes(spec.short, spec.unit, spec.last, shared.since),
       padding: [10, 12, 0, 0],
       legend: { show: false },
@@ -170,7 +178,7 @@ const chart = (() => {
         y: false, points: { show: false },
         drag: { x: true, y: false, setScale: false },
         bind: { dblclick: () => () => hooks.whole() },
-        sync: { key: "palpate", setSeries: false, scales: ["x", null], filters: { pub: (type) => type !== "mousedown" && type !== "mouseup" && type !== "dblclick" } },
+        sync: { key: shared.key ?? "palpate", setSeries: false, scales: ["x", null], filters: { pub: (type) => type !== "mousedown" && type !== "mouseup" && type !== "dblclick" } },
       },
       hooks: {
         drawClear: [(u) => shade(u, shared.touches)],

@@ -1,11 +1,13 @@
 //! `replay.html`: one self-contained page that shows a replay.
 
 mod answer;
+pub(crate) mod column;
 mod document;
 mod embed;
-mod quantity;
-mod table;
-mod thin;
+pub(crate) mod quantity;
+pub(crate) mod shell;
+pub(crate) mod table;
+pub(crate) mod thin;
 
 use std::io::{self, Write};
 
@@ -106,8 +108,8 @@ impl Page {
         for trial in &self.trials {
             trial.check()?;
         }
-        let budget = thin::budget(&self.trials);
-        let shown: Vec<Vec<usize>> = self.trials.iter().map(|trial| thin::rows(trial, budget)).collect();
+        let budget = thin::budget(self.trials.iter().map(|trial| 5 + 5 * trial.methods.len()).sum());
+        let shown: Vec<Vec<usize>> = self.trials.iter().map(|trial| trial.shown(budget)).collect();
         document::open(self, out)?;
         for (index, (trial, rows)) in self.trials.iter().zip(&shown).enumerate() {
             let section = document::trial(self, index, trial, rows.len());
@@ -128,6 +130,14 @@ impl Trial {
         }
         let message = format!("{}: the columns of a trial must all have the {rows} rows of its time", self.name);
         Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+    }
+
+    /// At most `budget` rows that look like all of them.
+    fn shown(&self, budget: usize) -> Vec<usize> {
+        let edges = thin::edges(&self.contact, budget / 2);
+        let innovations = self.methods.iter().map(|method| method.innovation.as_slice());
+        let signals: Vec<&[f32]> = [self.penetration.as_slice(), &self.force].into_iter().chain(innovations).collect();
+        thin::rows(self.time.len(), &edges, &signals, budget)
     }
 
     /// The method that predicted the force best: the one that the page quotes.

@@ -5,11 +5,21 @@ mod reading;
 #[path = "page/synthetic.rs"]
 mod synthetic;
 
-use palpate_lab::page::Trial;
-use reading::{bits, bytes, doubles, floats, prose, written};
+use palpate_lab::page::{Page, Trial};
+use reading::{bytes, doubles, floats, prose};
 use std::io::{self, ErrorKind, Write};
 use std::time::{Duration, Instant};
 use synthetic::{AFM, BENCH, Touching, odd, page, touching};
+
+fn written(page: &Page) -> String {
+    let mut out = Vec::new();
+    page.write(&mut out).expect("a vector takes everything");
+    String::from_utf8(out).expect("a page is UTF-8")
+}
+
+fn bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
 
 fn says(trial: Trial, sentence: &str) {
     let prose = prose(&written(&page("bench A", vec![trial])));

@@ -1,34 +1,16 @@
 //! The document around the numbers.
 
 use super::quantity::count;
-use super::{Page, Trial, answer, table};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use super::{Page, Trial, answer, shell, table};
+use maud::{Markup, html};
 use std::io::{self, Write};
 
-const STYLE: &str = concat!(include_str!("../../assets/uplot/uPlot.min.css"), include_str!("../../assets/replay.css"));
-const PLOTTING_LICENSE: &str = include_str!("../../assets/uplot/LICENSE");
-const PLOTTING: &str = include_str!("../../assets/uplot/uPlot.iife.min.js");
-const SCRIPTS: [&str; 3] = [
-    include_str!("../../assets/numbers.js"),
-    include_str!("../../assets/chart.js"),
-    include_str!("../../assets/replay.js"),
-];
-
-/// The page is a file that people pass on: the browser itself shall refuse whatever it might want from a network.
-const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+const STYLE: &str = include_str!("../../assets/replay.css");
+const SCRIPT: &str = include_str!("../../assets/replay.js");
 
 /// Everything before the first recording.
 pub(super) fn open(page: &Page, out: &mut impl Write) -> io::Result<()> {
-    let head = html! {
-        meta charset="utf-8";
-        meta http-equiv="Content-Security-Policy" content=(POLICY);
-        meta name="viewport" content="width=device-width, initial-scale=1";
-        meta name="color-scheme" content="light dark";
-        title { (page.rig) " – palpate replay" }
-        style { (PreEscaped(STYLE)) }
-    };
-    writeln!(out, r#"{}<html lang="en"><head>{}</head><body><main>"#, DOCTYPE.into_string(), head.into_string())?;
+    shell::open(&format!("{} – palpate replay", page.rig), STYLE, out)?;
     out.write_all(opening(page).into_string().as_bytes())
 }
 
@@ -115,12 +97,7 @@ fn pictures(trial: &Trial, shown: usize) -> Markup {
 /// Everything after the data: what the script draws into, and the script.
 pub(super) fn close(out: &mut impl Write) -> io::Result<()> {
     let templates = html! { (toolbar()) (figures()) };
-    writeln!(out, "</main>{}", templates.into_string())?;
-    writeln!(out, "<script>/*\n{PLOTTING_LICENSE}\n*/\n{PLOTTING}</script>")?;
-    for script in SCRIPTS {
-        writeln!(out, "<script>\n{script}</script>")?;
-    }
-    writeln!(out, "</body></html>")
+    shell::close(&templates, SCRIPT, out)
 }
 
 fn toolbar() -> Markup {

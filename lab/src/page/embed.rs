@@ -1,7 +1,6 @@
 //! The data inside the page: one JSON element that describes, and base64 columns that carry the numbers.
 
-use super::{Page, Trial, Units};
-use base64::{engine::general_purpose::STANDARD, write::EncoderWriter};
+use super::{Page, Trial, Units, column};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -41,10 +40,7 @@ struct DescribedMethod<'a> {
 /// Writes the description and the columns of every trial, reduced to the rows in `shown`.
 pub(super) fn data(page: &Page, shown: &[Vec<usize>], out: &mut impl Write) -> io::Result<()> {
     let trials = page.trials.iter().zip(shown).map(|(trial, rows)| describe(page, trial, rows.len())).collect();
-    let json = serde_json::to_string(&Description { trials })?;
-    // A name may hold "</script>", and only "<" can end a script element.
-    let json = json.replace('<', "\\u003c");
-    writeln!(out, r#"<script type="application/json" id="description">{json}</script>"#)?;
+    column::description(&Description { trials }, out)?;
     for (index, (trial, rows)) in page.trials.iter().zip(shown).enumerate() {
         columns(index, trial, rows, out)?;
     }
@@ -78,30 +74,14 @@ pub(super) fn colour(page: &Page, name: &str) -> usize {
 
 fn columns(index: usize, trial: &Trial, rows: &[usize], out: &mut impl Write) -> io::Result<()> {
     // Single precision would round a clock that counts from an epoch.
-    column(out, &format!("t{index}-time"), rows, |row| trial.time[row].to_le_bytes())?;
-    column(out, &format!("t{index}-contact"), rows, |row| [u8::from(trial.contact[row])])?;
-    column(out, &format!("t{index}-penetration"), rows, |row| trial.penetration[row].to_le_bytes())?;
-    column(out, &format!("t{index}-force"), rows, |row| trial.force[row].to_le_bytes())?;
+    column::write(out, &format!("t{index}-time"), rows, |row| trial.time[row].to_le_bytes())?;
+    column::write(out, &format!("t{index}-contact"), rows, |row| [u8::from(trial.contact[row])])?;
+    column::write(out, &format!("t{index}-penetration"), rows, |row| trial.penetration[row].to_le_bytes())?;
+    column::write(out, &format!("t{index}-force"), rows, |row| trial.force[row].to_le_bytes())?;
     for (number, method) in trial.methods.iter().enumerate() {
         for (name, values) in OF_A_METHOD.into_iter().zip(method.columns()) {
-            column(out, &format!("t{index}-m{number}-{name}"), rows, |row| values[row].to_le_bytes())?;
+            column::write(out, &format!("t{index}-m{number}-{name}"), rows, |row| values[row].to_le_bytes())?;
         }
     }
     Ok(())
-}
-
-fn column<const N: usize>(
-    out: &mut impl Write,
-    id: &str,
-    rows: &[usize],
-    bytes: impl Fn(usize) -> [u8; N],
-) -> io::Result<()> {
-    write!(out, r#"<script type="application/octet-stream" id="{id}">"#)?;
-    let mut encoder = EncoderWriter::new(&mut *out, &STANDARD);
-    for &row in rows {
-        encoder.write_all(&bytes(row))?;
-    }
-    encoder.finish()?;
-    drop(encoder);
-    writeln!(out, "</script>")
 }

@@ -69,7 +69,8 @@ fn figures(trial: &Trial, summary: Summary) -> Markup {
     }
 }
 
-fn difference(value: f64, nominal: f64) -> String {
+/// How far a value is from the nominal one.
+pub(crate) fn difference(value: f64, nominal: f64) -> String {
     let ratio = value / nominal;
     match ratio {
         _ if !ratio.is_finite() => String::new(),

@@ -1,7 +1,5 @@
 //! Which rows of a long trial the page shows.
 
-use super::Trial;
-
 /// More rows than this a screen cannot show, and nine methods of them already weigh 3 MB.
 const ROWS_OF_A_TRIAL: usize = 12_000;
 /// Numbers that the trials of a page share (at 5.3 bytes each), so that twenty recordings weigh no more than a few.
@@ -9,24 +7,20 @@ const NUMBERS_OF_A_PAGE: usize = 2_000_000;
 /// Below this a picture is no longer one.
 const FEWEST: usize = 500;
 
-/// Rows that each trial of a page may show.
-pub(super) fn budget(trials: &[Trial]) -> usize {
-    let columns: usize = trials.iter().map(|trial| 5 + 5 * trial.methods.len()).sum();
+/// Rows that each trial of a page may show, where all trials together have `columns`.
+pub(crate) fn budget(columns: usize) -> usize {
     (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST, ROWS_OF_A_TRIAL)
 }
 
-/// At most `budget` rows of `trial`, in order: the first and the last, both sides of every edge of contact, and in
-/// every stretch of time the extremes of penetration, of force and of each innovation. Where the edges alone would
-/// take more than half of the budget, every n-th of them.
-pub(super) fn rows(trial: &Trial, budget: usize) -> Vec<usize> {
-    let total = trial.time.len();
+/// At most `budget` of `total` rows, in order: the first and the last, those of `certain`, and in every stretch of
+/// time the extremes of each signal. `certain` must leave some of the budget.
+pub(crate) fn rows(total: usize, certain: &[usize], signals: &[&[f32]], budget: usize) -> Vec<usize> {
     if total <= budget {
         return (0..total).collect();
     }
-    let edges = edges(&trial.contact, budget / 2);
     let mut stretches = budget / 2;
     loop {
-        let kept = keep(trial, &edges, stretches);
+        let kept = keep(total, certain, signals, stretches);
         if kept.len() <= budget || stretches == 1 {
             return kept;
         }
@@ -36,21 +30,20 @@ pub(super) fn rows(trial: &Trial, budget: usize) -> Vec<usize> {
     }
 }
 
-fn edges(contact: &[bool], most: usize) -> Vec<usize> {
-    let is_edge = |&i: &usize| contact[i] != contact[i - 1];
-    let all: Vec<usize> = (1..contact.len()).filter(is_edge).collect();
+/// Both sides of every edge of `flags`; where they would be more than `most`, of every n-th.
+pub(crate) fn edges(flags: &[bool], most: usize) -> Vec<usize> {
+    let is_edge = |&i: &usize| flags[i] != flags[i - 1];
+    let all: Vec<usize> = (1..flags.len()).filter(is_edge).collect();
     let every = (2 * all.len()).div_ceil(most.max(2)).max(1);
     all.into_iter().step_by(every).flat_map(|i| [i - 1, i]).collect()
 }
 
-fn keep(trial: &Trial, edges: &[usize], stretches: usize) -> Vec<usize> {
-    let total = trial.time.len();
+fn keep(total: usize, certain: &[usize], signals: &[&[f32]], stretches: usize) -> Vec<usize> {
     let mut kept = vec![false; total];
     kept[0] = true;
     kept[total - 1] = true;
-    edges.iter().for_each(|&row| kept[row] = true);
-    let innovations = trial.methods.iter().map(|method| method.innovation.as_slice());
-    for signal in [trial.penetration.as_slice(), &trial.force].into_iter().chain(innovations) {
+    certain.iter().for_each(|&row| kept[row] = true);
+    for signal in signals {
         for stretch in 0..stretches {
             let (start, end) = (stretch * total / stretches, (stretch + 1) * total / stretches);
             for row in extremes(&signal[start..end]).into_iter().flatten() {
