@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::catalogue::{self, EffectsArgs};
+use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
 use crate::replay::{self, ReplayArgs};
 use crate::simulate::{self, SimulateArgs};
@@ -18,18 +20,24 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Find where simulation and recordings differ, and which physics is missing
+    Diagnose(DiagnoseArgs),
     /// Run recordings through the estimators
     Replay(ReplayArgs),
     /// Make a recording from a rig file
     Simulate(SimulateArgs),
+    /// List the physics that it knows beyond spring and damper
+    Effects(EffectsArgs),
 }
 
 /// Runs the command line; 0 done, 1 the input or a file is at fault, 2 the command line is.
 #[must_use]
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Diagnose(args) => diagnose::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
+        Command::Effects(args) => catalogue::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -7,10 +7,12 @@ use palpate::Method;
 use palpate::exchange::estimate_words;
 
 use crate::device::{Device, project};
+use crate::diagnose::{self, DiagnoseArgs};
+use crate::effects;
 use crate::recording::Recording;
 use crate::recordings;
 use crate::replay::{Options, Outputs, Place, Replayed, Runner, replay};
-use crate::rig::Rig;
+use crate::rig::{Rig, Sensors};
 use crate::simulate::{self, SimulateArgs};
 use crate::tools::{Leave, MissingTools};
 
@@ -47,6 +49,18 @@ pub fn run() -> Result<()> {
         None => left_out.push(format!("the real recording: there is none here; {}", recordings::ADVICE)),
     }
 
+    println!("4. What the simulation leaves out: a bench whose contact relaxes, which the rig file does not know");
+    pages.push(concealed(&bench, &out.join("diagnosis"))?);
+    println!("5. The same of a real recording: an arm with a weight and dry friction, held against a bare inertia");
+    let arm = recordings::folder().map(|folder| folder.join("dfki_pendulum"));
+    match arm.filter(|folder| folder.is_dir()) {
+        Some(folder) => {
+            let trials = ["ddp.csv", "dircol.csv"].map(|name| folder.join(name));
+            pages.push(explained(&rigs.join("dfki_pendulum.toml"), &trials, &out.join("pendulum"))?);
+        }
+        None => left_out.push(format!("the arm: there is none here; {}", recordings::ADVICE)),
+    }
+
     println!("Pages to open in a browser:");
     pages.iter().for_each(|page| println!("   {}", page.display()));
     if left_out.is_empty() {
@@ -56,6 +70,57 @@ pub fn run() -> Result<()> {
         left_out.iter().for_each(|what| println!("   {what}"));
     }
     Ok(())
+}
+
+/// Depth, period and sine of the two trials that are diagnosed.
+const MOTIONS: [(f64, f64, f64); 2] = [(12e-3, 5.0, 6.0), (8e-3, 4.0, 3.0)];
+
+/// Simulates two trials of the bench with a relaxing contact, and diagnoses them against the bench without it.
+fn concealed(bench: &Path, out: &Path) -> Result<PathBuf> {
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    let mut known = Rig::read(bench)?;
+    known.sensors = Sensors {
+        position_resolution: Some(5e-6),
+        force_resolution: Some(0.005),
+        force_noise: Some(0.01),
+        force_zero: None,
+    };
+    known.simulation.duration_s = 12.0;
+    let mut trials = Vec::new();
+    for (number, (depth, period, sine)) in MOTIONS.into_iter().enumerate() {
+        let mut true_one = known.clone();
+        if let Some(reference) = &mut true_one.reference {
+            (reference.contact_depth, reference.period_s, reference.contact_s) = (depth, period, 0.6 * period);
+            (reference.free_depth, reference.sine_amplitude, reference.sine_frequency_hz) = (-5e-3, 1e-3, sine);
+        }
+        let relaxation = effects::find("stress_relaxation").context("no effect of that name")?;
+        true_one.effects = vec![effects::to_table(relaxation, 0, true_one.coordinate, &[60.0, 0.4], None)];
+        let (rig, trial) =
+            (out.join(format!("true-{}.toml", number + 1)), out.join(format!("trial-{}.csv", number + 1)));
+        true_one.write(&rig)?;
+        simulate::run(SimulateArgs { rig, model: None, seed: number as u64, out: trial.clone() })?;
+        trials.push(trial);
+    }
+    let rig = out.join("known.toml");
+    known.write(&rig)?;
+    explained(&rig, &trials, out)
+}
+
+/// Diagnoses `trials`; returns the page.
+fn explained(rig: &Path, trials: &[PathBuf], out: &Path) -> Result<PathBuf> {
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    let page = out.join("diagnosis.html");
+    diagnose::run(&DiagnoseArgs {
+        rig: rig.to_path_buf(),
+        trials: trials.to_vec(),
+        simulation: Vec::new(),
+        json: Some(out.join("diagnosis.json")),
+        report: Some(page.clone()),
+        model: Some(out.join("improved.toml")),
+        experiment: None,
+        seed: 1,
+    })?;
+    Ok(page)
 }
 
 /// Identifies one recording on the host and, where there is one, on the device; returns the page.

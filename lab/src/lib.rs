@@ -1,8 +1,11 @@
 //! The host tool of palpate, as a library so that its binaries and tests share it.
 
+pub mod catalogue;
 pub mod cli;
 pub mod demo;
 pub mod device;
+pub mod diagnose;
+pub mod effects;
 pub mod error;
 pub mod outfile;
 pub mod page;

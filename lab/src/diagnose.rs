@@ -1,0 +1,85 @@
+//! `palpate diagnose`: where simulation and recording differ, and why.
+//!
+//! The recordings are checked ([`check`]) and brought onto one clock ([`raw`], [`unround`]); every channel is looked at
+//! through the same filter ([`lens`], [`track`]). The rig's model ([`model`]) is fitted ([`fit`]), twins of it tell what the
+//! sensors alone would leave ([`twin`], [`whiten`], [`chance`]), and every effect is asked what it could take of the rest
+//! ([`score`], [`tones`], [`texture`], [`fold`]). The best is added until nothing worth it is left ([`study`], [`select`]);
+//! the judge names it, or owns that nothing explains the rest ([`judge`]).
+
+pub mod answer;
+pub mod chance;
+pub mod check;
+pub mod command;
+pub mod compose;
+pub mod experiment;
+pub mod fit;
+pub mod fold;
+pub mod improved;
+pub mod interval;
+pub mod judge;
+pub mod lens;
+pub mod locate;
+pub mod measure;
+pub mod model;
+pub mod phase;
+pub mod raw;
+pub mod report;
+pub mod score;
+pub mod select;
+pub mod sentence;
+pub mod study;
+pub mod texture;
+pub mod tones;
+pub mod track;
+pub mod twin;
+pub mod unround;
+pub mod whiten;
+
+use anyhow::{Context as _, Result};
+
+pub use command::{DiagnoseArgs, Found, run};
+
+use crate::recording::Recording;
+use crate::rig::Rig;
+use crate::sensors::Figures;
+use compose::Parts;
+use lens::Lens;
+use raw::Raw;
+use study::Study;
+use twin::Studio;
+
+/// Diagnoses `trials` against `rig`; `origin` names the rig file in errors, `say` is told how it goes.
+///
+/// The same input and seed give the same answer to the bit.
+///
+/// # Errors
+/// No channel that the rig predicts and every trial holds, trials too short to tell anything, or effects in the rig file
+/// that cannot be.
+pub fn diagnose(
+    rig: &Rig,
+    origin: &str,
+    trials: &[Recording],
+    simulation: &[Recording],
+    seed: u64,
+    say: &dyn Fn(&str),
+) -> Result<Found> {
+    command::ensure_usable(rig, trials, origin)?;
+    say("reading the sensors");
+    let period = trials.iter().map(Recording::period).fold(0.0, f64::max);
+    let even = |recording: &Recording| Raw::of(recording, Figures::of(rig, recording), period);
+    let raws: Vec<Raw> = trials.iter().map(even).collect();
+    let findings = check::check(rig, trials, &raws);
+    let (contact, drive) = (Lens::for_contact(rig, &raws), Lens::for_drive(rig, &raws));
+    let study = Study::new(rig, origin, Studio::new(raws, contact, drive, seed))?;
+    let mut search = select::search(&study, say);
+    let judgement = judge::judge(&study, &mut search, say).context("nothing was searched")?;
+    say("the report");
+    let handed = (!simulation.is_empty()).then(|| {
+        let simulated: Vec<Raw> = simulation.iter().map(even).collect();
+        compose::handed_rests(&study, &simulated)
+    });
+    let improved = improved::rig_of(rig, &study, &search, &judgement).context("nothing was searched")?;
+    let parts = Parts { rig, study: &study, search: &search, judgement: &judgement, handed, findings };
+    let (answer, pictures) = compose::compose(parts).context("no channel was left to look at")?;
+    Ok(Found { answer, pictures, improved })
+}

@@ -1,0 +1,101 @@
+//! Readings that leap, and sensors that step too coarsely for the motion.
+
+use super::note::Note;
+use super::view::{View, quantile, range};
+use super::words::{count, digits, quantity};
+use crate::rig::Rig;
+
+/// A leap is so many times what a row moves at most, ...
+const LEAP: f64 = 10.0;
+
+/// ... such a share of the whole range, ...
+const SHARE: f64 = 0.1;
+
+/// (from which it spoils the trial), ...
+const MOST: f64 = 0.5;
+
+/// ... and so many steps of the sensor.
+const STEPS: f64 = 5.0;
+
+/// Steps over the whole motion below which a sensor is coarse, ...
+const COARSE: f64 = 20.0;
+
+/// ... and below which it shows next to nothing.
+const BLIND: f64 = 5.0;
+
+/// Deviations over which pure noise ranges: a hundredth left out at either end leaves 4.7.
+const IDLE: f64 = 5.5;
+
+/// Positions that leap from one row to the next and stay there.
+pub fn jumps(view: &View<'_>) -> Option<Note> {
+    let (time, position) = (&view.recording.time, &view.recording.position);
+    let rate = |row: usize| (position[row + 1] - position[row]).abs() / (time[row + 1] - time[row]);
+    let rates: Vec<f64> = (0..position.len() - 1).map(rate).collect();
+    let usual = quantile(rates.clone(), 0.99)?;
+    let whole = range(position);
+    let dropped = |row: usize| {
+        let near = 1.5 * view.recording.period();
+        view.raw.dropouts.iter().any(|at| (at + view.raw.origin - time[row]).abs() < near)
+    };
+    let leaps: Vec<usize> = (0..rates.len())
+        .filter(|&row| {
+            let leap = (position[row + 1] - position[row]).abs();
+            rates[row] > LEAP * usual && leap > SHARE * whole && leap > STEPS * view.raw.figures.position.resolution
+        })
+        .filter(|&row| !dropped(row))
+        .collect();
+    let worst = leaps.iter().copied().max_by(|a, b| rates[*a].total_cmp(&rates[*b]))?;
+    let leap = position[worst + 1] - position[worst];
+    let text = format!(
+        "The position leaps by {} in one row at {} s ({} in all), which no other row comes near: a contact that gives way or lets go at once, or a \
+         counter that was reset, or two runs in one file. Unless the contact did it, cut the trial there.",
+        quantity(leap, view.length),
+        digits(time[worst + 1]),
+        count(leaps.len(), "leap"),
+    );
+    let share = leap.abs() / whole;
+    Some(Note { grave: share > MOST, ..Note::mild("jump", format!("{}, position", view.name()), share, text) })
+}
+
+/// Sensors whose whole motion is a few of their steps.
+pub fn coarse(rig: &Rig, view: &View<'_>) -> Vec<Note> {
+    let figures = view.raw.figures;
+    let deepest = quantile(view.depth.clone(), 0.99).unwrap_or(0.0);
+    // Where the tool touches, the way it goes in is what the contact shows by.
+    let touches = view.force.is_some() && rig.contact.is_some_and(|contact| !contact.bilateral) && deepest > 0.0;
+    let (motion, where_) = if touches { (deepest, " in contact") } else { (range(&view.depth), "") };
+    let force = view.recording.force.as_ref().zip(figures.force);
+    let position = judge(motion, figures.position.resolution, figures.position.noise).map(|steps| Note {
+        grave: steps < BLIND,
+        ..Note::mild(
+            "coarse position",
+            format!("{}, position", view.name()),
+            steps.recip(),
+            format!(
+                "The position sensor is coarse for this motion: {} is all the way{where_}, {} times what the sensor tells apart. Move further, or use a \
+                 finer encoder.",
+                quantity(motion, view.length),
+                digits(steps),
+            ),
+        )
+    });
+    let force = force.and_then(|(values, channel)| {
+        let whole = range(values);
+        let steps = judge(whole, channel.resolution, channel.noise)?;
+        let text = format!(
+            "The force sensor is coarse for this load: {} is all it moves by, {} times what the sensor tells apart. Press harder, or use a more \
+             sensitive sensor.",
+            quantity(whole, view.push),
+            digits(steps),
+        );
+        Some(Note { grave: steps < BLIND, ..Note::mild("coarse force", format!("{}, force", view.name()), steps.recip(), text) })
+    });
+    [position, force].into_iter().flatten().collect()
+}
+
+/// How many steps, or deviations of the noise, a motion has, where they are few.
+fn judge(motion: f64, resolution: f64, noise: f64) -> Option<f64> {
+    let steps = motion / resolution.max(noise);
+    // A column that does not move at all, or by its noise only, is told elsewhere.
+    (motion > 0.0 && steps < COARSE && (steps > IDLE || resolution >= noise)).then_some(steps)
+}

@@ -1,0 +1,143 @@
+//! A trial as the checks see it: its rows, and its motion smoothed until the speed stands out of the noise.
+
+use super::super::lens::Lens;
+use super::super::raw::Raw;
+use crate::recording::Recording;
+use crate::rig::{Coordinate, Rig};
+
+/// A trial under the checks. The smoothed columns are of equal length.
+pub struct View<'a> {
+    /// As recorded.
+    pub recording: &'a Recording,
+    /// On an even clock.
+    pub raw: &'a Raw,
+    /// "m" or "rad".
+    pub length: &'static str,
+    /// "N" or "N m".
+    pub push: &'static str,
+    /// Seconds between smoothed rows.
+    pub step: f64,
+    /// Depth beyond the rig's surface.
+    pub depth: Vec<f64>,
+    /// Speed.
+    pub speed: Vec<f64>,
+    /// Acceleration.
+    pub bend: Vec<f64>,
+    /// Force reading.
+    pub force: Option<Vec<f64>>,
+    /// Effort.
+    pub effort: Option<Vec<f64>>,
+    /// What noise leaves in depth, speed and force.
+    pub noise: [f64; 3],
+}
+
+/// Share of the usual speed that noise may leave in it.
+const CALM: f64 = 0.03;
+
+/// Narrowest blur, in periods.
+const SHARP: f64 = 1.5;
+
+/// Widest blur, as a share of the trial.
+const WIDE: f64 = 0.004;
+
+impl<'a> View<'a> {
+    /// Looks at a trial.
+    pub fn new(rig: &Rig, recording: &'a Recording, raw: &'a Raw) -> Self {
+        let period = raw.period;
+        let shaken = raw.figures.position.noise;
+        let usual = travel(&raw.position) / (raw.len().max(2) as f64 * period);
+        let mut blur = SHARP * period;
+        let lens = loop {
+            let stride = (blur / (2.0 * period)).round().max(1.0) as usize;
+            let lens = Lens::new(blur, period, stride);
+            if lens.noise()[1] * shaken <= CALM * usual || 2.0 * blur > WIDE * raw.len() as f64 * period {
+                break lens;
+            }
+            blur *= 2.0;
+        };
+        let surface = rig.surface();
+        let [level, slope, _] = lens.noise();
+        let (length, push) = match rig.coordinate {
+            Coordinate::Linear => ("m", "N"),
+            Coordinate::Rotary => ("rad", "N m"),
+        };
+        Self {
+            recording,
+            raw,
+            length,
+            push,
+            step: lens.step(),
+            depth: lens.level(&raw.position).into_iter().map(|position| position - surface).collect(),
+            speed: lens.slope(&raw.position),
+            bend: lens.bend(&raw.position),
+            force: raw.force.as_ref().map(|force| lens.level(force)),
+            effort: raw.effort.as_ref().map(|effort| lens.held(effort)),
+            noise: [level * shaken, slope * shaken, level * raw.figures.force.map_or(0.0, |force| force.noise)],
+        }
+    }
+
+    /// File name.
+    pub fn name(&self) -> &str {
+        &self.recording.name
+    }
+
+    /// Smoothed rows of contact by the rig's surface: all of them where it is bilateral, none in a rig without contact.
+    pub fn touching(&self, rig: &Rig) -> Vec<bool> {
+        let all = rig.contact.is_some_and(|contact| contact.bilateral);
+        self.depth.iter().map(|depth| rig.contact.is_some() && (all || *depth > 0.0)).collect()
+    }
+
+    /// What the force reads where nothing touches: by the rig file, else in front of the surface, else unknown.
+    pub fn zero(&self, rig: &Rig) -> Option<f64> {
+        let free = || {
+            let rows = self.depth.iter().zip(self.force.as_ref()?).filter(|(depth, _)| **depth < -self.noise[0]);
+            middle(rows.map(|(_, force)| *force).collect())
+        };
+        rig.sensors.force_zero.or_else(free)
+    }
+}
+
+/// Sum of all ways, less what noise adds by going to and fro: over stretches of a hundredth.
+fn travel(values: &[f64]) -> f64 {
+    let stride = (values.len() / 100).max(1);
+    let picked: Vec<f64> = values.iter().step_by(stride).copied().collect();
+    picked.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
+}
+
+/// The value below which the share `at` of `values` lies; `None` where there are none.
+pub fn quantile(mut values: Vec<f64>, at: f64) -> Option<f64> {
+    let last = values.len().checked_sub(1)?;
+    let rank = (at * last as f64).round() as usize;
+    Some(*values.select_nth_unstable_by(rank.min(last), f64::total_cmp).1)
+}
+
+/// The median.
+pub fn middle(values: Vec<f64>) -> Option<f64> {
+    quantile(values, 0.5)
+}
+
+/// Lowest and highest.
+pub fn bounds(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)))
+}
+
+/// Highest less lowest, leaving out a hundredth at either end.
+pub fn range(values: &[f64]) -> f64 {
+    match (quantile(values.to_vec(), 0.01), quantile(values.to_vec(), 0.99)) {
+        (Some(low), Some(high)) => high - low,
+        _ => 0.0,
+    }
+}
+
+/// Correlation of two columns; 0 where one does not vary.
+pub fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let rows = a.len().min(b.len()).max(1) as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / rows;
+    let (middle_a, middle_b) = (mean(a), mean(b));
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    for (a, b) in a.iter().zip(b) {
+        let (a, b) = (a - middle_a, b - middle_b);
+        (ab, aa, bb) = (ab + a * b, aa + a * a, bb + b * b);
+    }
+    if aa > 0.0 && bb > 0.0 { ab / (aa.sqrt() * bb.sqrt()) } else { 0.0 }
+}

@@ -1,0 +1,194 @@
+//! The command line of `palpate diagnose`: files in, files out.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail, ensure};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::answer::{Answer, Experiment, Pictures};
+use super::{diagnose, report};
+use crate::error::{InputError, UsageError};
+use crate::outfile::OutFile;
+use crate::recording::Recording;
+use crate::rig::Rig;
+
+/// Find where simulation and recordings differ, and which physics is missing
+#[derive(Debug, Clone, Args)]
+pub struct DiagnoseArgs {
+    /// The rig file: the simulation
+    #[arg(long, value_name = "RIG.toml")]
+    pub rig: PathBuf,
+    /// Recordings of the real thing, one file a trial
+    #[arg(required = true, value_name = "TRIAL.csv")]
+    pub trials: Vec<PathBuf>,
+    /// What your own simulator gave for each trial, in the same order, in the columns of a recording
+    #[arg(long, value_name = "SIM.csv", num_args = 1..)]
+    pub simulation: Vec<PathBuf>,
+    /// Write the diagnosis as JSON; `-`: to standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the report, one self-contained page
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Write the improved rig file, which `palpate simulate` runs
+    #[arg(long, value_name = "FILE.toml")]
+    pub model: Option<PathBuf>,
+    /// Write the reference trajectory that would tell the rivals apart, where there are any
+    #[arg(long, value_name = "FILE.csv")]
+    pub experiment: Option<PathBuf>,
+    /// Seed of the twins: the same seed, the same answer
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// Runs `palpate diagnose`.
+///
+/// # Errors
+/// A rig file or recording at fault, a wrong count of simulations, or an output that cannot be written.
+pub fn run(args: &DiagnoseArgs) -> Result<()> {
+    let rig = Rig::read(&args.rig)?;
+    let origin = args.rig.display().to_string();
+    if !args.simulation.is_empty() && args.simulation.len() != args.trials.len() {
+        let expected = format!("one a trial, {} in all", args.trials.len());
+        bail!(UsageError::new("--simulation", format!("{} files", args.simulation.len()), expected));
+    }
+    refuse_own_input(args)?;
+    let read = |paths: &[PathBuf]| paths.iter().map(|path| Recording::read(path, &rig)).collect::<Result<Vec<_>, _>>();
+    let (trials, simulation) = (read(&args.trials)?, read(&args.simulation)?);
+    args.simulation.iter().zip(&simulation).zip(&trials).try_for_each(|((path, run), trial)| fits(path, run, trial))?;
+    // Opened before the work: a place that cannot be written is told at once.
+    let open = |path: &Option<PathBuf>| {
+        path.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()
+    };
+    let (json, page, model) = (open(&args.json)?, open(&args.report)?, open(&args.model)?);
+    let experiment = open(&args.experiment)?;
+    let bar = progress();
+    let found = diagnose(&rig, &origin, &trials, &simulation, args.seed, &|step| bar.set_message(step.to_owned()))?;
+    bar.finish_and_clear();
+    print(&found.answer);
+    if let Some(file) = model {
+        commit(file, found.improved.to_toml().as_bytes())?;
+    }
+    if let Some(mut file) = page {
+        report::write(&found.answer, &found.pictures, &mut file).map_err(|error| file.fault(&error))?;
+        file.commit()?;
+    }
+    match (experiment, &found.pictures.experiment) {
+        (Some(file), Some(next)) => commit(file, trajectory(next, &rig).as_bytes())?,
+        (Some(_), None) => eprintln!("note: no rival is left to be told apart: no experiment is written"),
+        (None, _) => {}
+    }
+    let text = serde_json::to_string_pretty(&found.answer).context("the diagnosis cannot be written as JSON")? + "\n";
+    match json {
+        Some(file) => commit(file, text.as_bytes()),
+        None if args.json.is_some() => Ok(std::io::stdout().write_all(text.as_bytes())?),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a simulation that ends before its trial does, or lacks one of its channels: a residual against nothing is none.
+fn fits(path: &Path, run: &Recording, trial: &Recording) -> Result<(), InputError> {
+    let length = |of: &Recording| of.time.last().copied().unwrap_or(0.0) - of.time.first().copied().unwrap_or(0.0);
+    let (found, wanted) = (length(run), length(trial));
+    let error = |found: String, expected: String| Err(InputError::new(path.display(), found, expected));
+    if found + 1.5 * run.period().max(trial.period()) < wanted {
+        return error(format!("{found} s of it"), format!("as long as its trial, {} with {wanted} s", trial.name));
+    }
+    let pairs = [("force", &run.force, &trial.force), ("effort", &run.effort, &trial.effort)];
+    match pairs.iter().find(|(_, run, trial)| run.is_none() && trial.is_some()) {
+        Some((channel, ..)) => error(format!("no {channel}"), format!("the channels of its trial, {}", trial.name)),
+        None => Ok(()),
+    }
+}
+
+/// A slip on the command line must not cost a user a recording.
+fn refuse_own_input(args: &DiagnoseArgs) -> Result<(), InputError> {
+    let inputs: Vec<&Path> =
+        std::iter::once(&args.rig).chain(&args.trials).chain(&args.simulation).map(PathBuf::as_path).collect();
+    for out in [&args.json, &args.report, &args.model, &args.experiment].into_iter().flatten() {
+        let Ok(place) = std::fs::canonicalize(out) else { continue };
+        if inputs.iter().any(|input| std::fs::canonicalize(input).is_ok_and(|input| input == place)) {
+            return Err(InputError::new(out.display(), "an input of this very run", "another file to write to"));
+        }
+    }
+    Ok(())
+}
+
+fn commit(mut file: OutFile, bytes: &[u8]) -> Result<()> {
+    file.write_all(bytes).map_err(|error| file.fault(&error))?;
+    Ok(file.commit()?)
+}
+
+/// To standard error, and hidden where that is no terminal.
+fn progress() -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(std::time::Duration::from_millis(120));
+    bar
+}
+
+/// To standard error: standard output is for the JSON.
+fn print(answer: &Answer) {
+    eprintln!("{}", answer.summary);
+    for physics in &answer.physics {
+        eprintln!("  {}: {}", physics.name, physics.statement);
+        for value in &physics.parameters {
+            let [low, high] = value.ci95;
+            eprintln!("    {} = {:.4e} {} (95 %: {low:.4e} to {high:.4e})", value.name, value.value, value.unit);
+        }
+    }
+    for rival in &answer.rivals {
+        eprintln!("  not told apart: {}. {}", rival.physics.join(" and "), rival.separated_by);
+    }
+    for finding in &answer.findings {
+        let place = if finding.place.is_empty() { String::new() } else { format!("{}: ", finding.place) };
+        eprintln!("  {}: {place}{}", if finding.grave { "warning" } else { "note" }, finding.text);
+    }
+}
+
+fn trajectory(next: &Experiment, rig: &Rig) -> String {
+    let name = if rig.coordinate == crate::rig::Coordinate::Rotary { "reference_rad" } else { "reference_m" };
+    let mut text = format!("t_s,{name}\n");
+    for (time, reference) in next.time.iter().zip(&next.reference) {
+        text += &format!("{time},{reference}\n");
+    }
+    text
+}
+
+/// What `diagnose` found.
+pub struct Found {
+    /// As JSON.
+    pub answer: Answer,
+    /// For the page.
+    pub pictures: Pictures,
+    /// The improved rig.
+    pub improved: Rig,
+}
+
+/// Fewest rows of a trial: below them no filter has settled.
+const FEWEST_ROWS: usize = 32;
+
+/// Refuses trials that nothing can be told of.
+///
+/// # Errors
+/// No trial, a trial of a few rows, or none of the rig's channels in them.
+pub fn ensure_usable(rig: &Rig, trials: &[Recording], origin: &str) -> Result<()> {
+    ensure!(!trials.is_empty(), UsageError::new("TRIAL.csv", "none", "at least one recording"));
+    if let Some(short) = trials.iter().find(|trial| trial.time.len() < FEWEST_ROWS) {
+        let found = format!("{} rows", short.time.len());
+        let expected = format!("at least {FEWEST_ROWS}, and some hundreds to tell much");
+        bail!(InputError::new(&short.name, found, expected));
+    }
+    let has = |pick: &dyn Fn(&Recording) -> bool| trials.iter().all(pick);
+    let force = rig.contact.is_some() && has(&|trial| trial.force.is_some());
+    let effort = rig.drive.is_some() && has(&|trial| trial.effort.is_some());
+    if !force && !effort {
+        let found = "no [contact] with a force recorded in every trial, and no [drive] with an effort";
+        bail!(InputError::new(origin, found, "at least one channel that the rig predicts and every trial holds"));
+    }
+    Ok(())
+}

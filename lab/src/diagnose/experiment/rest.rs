@@ -1,0 +1,63 @@
+//! What a wrong model leaves of what the right one shows.
+
+use super::super::fit::{self, Data};
+use super::super::model::Channels;
+use super::super::track::{Track, Trial};
+use super::super::whiten::{Floor, Whitener};
+use super::bench::Bench;
+use super::claim::Claim;
+
+/// What a wrong model leaves of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rest {
+    /// Sum of squares over the floors of both channels, beyond what the right model leaves.
+    pub energy: f64,
+    /// Root mean square in the force reading, N or N m; zero where there is none.
+    pub force: f64,
+    /// Root mean square in the drive's balance.
+    pub effort: f64,
+}
+
+impl Bench<'_> {
+    /// What `rival`, all of its values refitted, leaves of `trials`.
+    #[must_use]
+    pub fn left(&self, rival: &Claim, trials: &[Trial]) -> Rest {
+        let whitener = self.even(trials);
+        let data = Data { trials, whitener: &whitener, rows: None };
+        // From its own values and from the answer's: what looks told apart may be a search that got lost.
+        let starts = [rival.values.clone(), rival.about(self.answer())];
+        let fits = starts.iter().map(|start| fit::fit(&data, &rival.model, start, &rival.scene));
+        let best = fits.min_by(|a, b| a.energy.total_cmp(&b.energy));
+        let Some(rival_fit) = best else { return Rest { energy: 0.0, force: 0.0, effort: 0.0 } };
+        let rests: Vec<_> =
+            trials.iter().map(|trial| rival.model.rest(&rival_fit.values, trial, Channels::BOTH)).collect();
+        let force = counted(&whitener.force, rests.iter().map(|rest| &rest.force));
+        let effort = counted(&whitener.effort, rests.iter().map(|rest| &rest.effort));
+        let own = data.energy(&self.answer().model, &self.answer().values);
+        Rest {
+            energy: (rival_fit.energy - own).max(0.0),
+            force: root_mean_square(&force),
+            effort: root_mean_square(&effort),
+        }
+    }
+
+    /// Even floors, raised so that a row counts for what it is worth.
+    fn even(&self, trials: &[Trial]) -> Whitener {
+        let channel = |effort: bool| {
+            let at = usize::from(effort);
+            let tracks: Vec<&Track> = trials.iter().map(|trial| trial.track(effort)).collect();
+            self.floors[at].map(|floor| Floor::even(&tracks, floor * self.memory[at].sqrt()))
+        };
+        Whitener { force: channel(false), effort: channel(true) }
+    }
+}
+
+/// The rows that count of a channel, all trials together.
+fn counted<'a>(floor: &Option<Floor>, rests: impl Iterator<Item = &'a Vec<f64>>) -> Vec<f64> {
+    let rows = floor.iter().flat_map(|floor| &floor.rows);
+    rows.zip(rests).flat_map(|(rows, rest)| rows.iter().filter_map(|&row| rest.get(row).copied())).collect()
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}

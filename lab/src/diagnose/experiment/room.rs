@@ -1,0 +1,115 @@
+//! What the recordings did, within which an experiment stays.
+
+use super::super::lens::Lens;
+use super::super::model::{Model, index};
+use super::super::study::Study;
+use super::super::track::Track;
+
+/// What the recordings did: an experiment that stays within it asks nothing of the rig that it has not borne.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Room {
+    /// Where the first recording began, m or rad.
+    pub start: f64,
+    /// Least position reached.
+    pub low: f64,
+    /// Greatest position reached.
+    pub high: f64,
+    /// Where the contact begins; `None` where nothing was touched.
+    pub surface: Option<f64>,
+    /// Whether there is free space before the surface, or nothing but free space.
+    pub free: bool,
+    /// Greatest speed reached, m/s or rad/s.
+    pub speed: f64,
+    /// Greatest acceleration reached.
+    pub acceleration: f64,
+    /// Length of the longest recording, s.
+    pub seconds: f64,
+    /// Highest frequency that the analysis sees whole, Hz.
+    pub band: f64,
+}
+
+/// Deviations of its noise by which a peak is lowered before it counts as reached.
+const DOUBT: f64 = 4.0;
+
+/// Share of the reach of a recording below which a depth, or free space, is none.
+const SLIGHT: f64 = 0.02;
+
+/// Share of the analysis' corner frequency below which a sine passes it nearly whole.
+const WHOLE: f64 = 0.6;
+
+impl Room {
+    /// Of the recordings of `study`, touching as `model` with `values` says; `None` where nothing moved.
+    #[must_use]
+    pub fn of(study: &Study, model: &Model, values: &[f64]) -> Option<Self> {
+        let trials = &study.studio.trials;
+        let both = || trials.iter().flat_map(|trial| [&trial.contact, &trial.drive]);
+        let (low, high) = both()
+            .flat_map(positions)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), position| (low.min(position), high.max(position)));
+        let noise = study.studio.raws.iter().map(|raw| raw.figures.position.noise).fold(0.0, f64::max);
+        let reached = |pick: &dyn Fn(&Track) -> &Vec<f64>, order: usize| {
+            let sharp = |lens: &Lens, tracks: &mut dyn Iterator<Item = &Track>| {
+                let peak = tracks.flat_map(|track| peaks(track, pick(track))).fold(0.0, f64::max);
+                // What noise made of the peak is not what the rig bore.
+                peak - DOUBT * noise * lens.noise()[order]
+            };
+            let contact = sharp(&study.studio.lens, &mut trials.iter().map(|trial| &trial.contact));
+            contact.max(sharp(&study.studio.drive_lens, &mut trials.iter().map(|trial| &trial.drive)))
+        };
+        let first = trials.first()?.contact.position.first()?;
+        let range = high - low;
+        let surface = values[index::SURFACE];
+        let touched = model.contact.is_some_and(|bilateral| bilateral || high - surface > SLIGHT * range);
+        let seconds = trials.iter().map(|t| t.contact.len() as f64 * t.contact.step).fold(f64::MIN_POSITIVE, f64::max);
+        // However noise hides them: the way was made in that time, and the speed reached within that way.
+        let speed = reached(&|track| &track.velocity, 1).max(range / seconds);
+        let acceleration = reached(&|track| &track.acceleration, 2).max(0.5 * speed * speed / range);
+        let room = Self {
+            start: first.clamp(low, high),
+            low,
+            high,
+            surface: touched.then(|| surface.clamp(low, high)),
+            free: !touched || (model.contact == Some(false) && surface - low > SLIGHT * range),
+            speed,
+            acceleration,
+            seconds,
+            band: WHOLE * study.studio.lens.corner(),
+        };
+        (range > 0.0 && room.speed > 0.0 && room.acceleration > 0.0).then_some(room)
+    }
+
+    /// The same, to be gone through at `part` of the speed.
+    #[must_use]
+    pub fn eased(self, part: f64) -> Self {
+        Self { speed: part * self.speed, acceleration: part * part * self.acceleration, ..self }
+    }
+
+    /// Position at `part` of the depth reached, zero at the surface; of the whole way where there is no corner to touch.
+    #[must_use]
+    pub fn depth(&self, part: f64) -> f64 {
+        let from = self.surface.filter(|_| self.free).unwrap_or(self.low);
+        from + part * (self.high - from)
+    }
+
+    /// Position at `part` of the free way, zero at its far end.
+    #[must_use]
+    pub fn away(&self, part: f64) -> f64 {
+        self.low + part * (self.surface.unwrap_or(self.high) - self.low)
+    }
+
+    /// The highest frequency at which a sine of `amplitude` keeps within speed, acceleration and band.
+    #[must_use]
+    pub fn quickest(&self, amplitude: f64) -> f64 {
+        let turn = (self.speed / amplitude).min((self.acceleration / amplitude).sqrt());
+        // A few turns have to fit in, and growing from nothing asks for more than swinging on.
+        (0.8 * turn / std::f64::consts::TAU).min(self.band).max(8.0 / self.seconds)
+    }
+}
+
+fn positions(track: &Track) -> impl Iterator<Item = f64> {
+    track.position.iter().zip(&track.seen).filter(|(_, seen)| **seen).map(|(position, _)| *position)
+}
+
+fn peaks<'a>(track: &'a Track, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    values.iter().zip(&track.seen).filter(|(_, seen)| **seen).map(|(value, _)| value.abs())
+}

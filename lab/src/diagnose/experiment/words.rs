@@ -1,0 +1,99 @@
+//! What an experiment is and what it would show, in plain words.
+
+use super::super::model::{Model, Term};
+use super::super::study::Study;
+use super::bench::Bench;
+use super::pair::{is_equivalent, separated_by};
+use super::rest::Rest;
+use super::{DECIDES, Trying, Worth};
+use crate::page::quantity::{rounded, seconds};
+
+/// Rates below this one are not set against that of the recordings: a ratio of two nothings.
+const NOTHING: f64 = 1e-3;
+
+/// Share of the noise below which a residual is not quoted.
+const UNSEEN: f64 = 0.05;
+
+/// Share of the greatest force, or effort, below which a noise is that of ideal sensors.
+const PERFECT: f64 = 1e-7;
+
+/// The text of an experiment.
+pub(super) fn text(
+    study: &Study,
+    bench: &Bench<'_>,
+    best: &Trying,
+    wider: &[bool],
+    worth: Worth,
+    answer: &Model,
+    rivals: &[(&Model, &[f64])],
+) -> String {
+    let unit = if study.is_rotary { "N m" } else { "N" };
+    let length = seconds(best.motion.course.seconds());
+    let terms = rivals.iter().map(|(rival, _)| differ(answer, rival));
+    let mut text = if best.least(wider) < DECIDES {
+        format!(
+            "No motion within what the recordings did tells them apart for certain. The best found: {}, {length} in all.",
+            best.motion.what
+        )
+    } else {
+        format!(
+            "Run {}: {length} in all, never deeper, farther, quicker or harder accelerated than the recordings were.",
+            best.motion.what
+        )
+    };
+    for (pair, (left, reverse)) in terms.zip(best.left.iter().zip(&best.reverse)) {
+        text.push(' ');
+        text.push_str(&sentence(bench, pair, left, reverse, unit));
+    }
+    if best.least(wider) >= DECIDES && worth.recorded > NOTHING && worth.designed > 1.5 * worth.recorded {
+        let times = rounded(worth.designed / worth.recorded, "1", 2);
+        text.push_str(&format!(" A second of it tells {times} times as much as one of the recordings."));
+    }
+    text
+}
+
+/// What would be seen of one pair, under either truth.
+fn sentence(bench: &Bench<'_>, pair: (Option<Term>, Option<Term>), left: &Rest, reverse: &Rest, unit: &str) -> String {
+    let name = |term: Option<Term>| term.map_or("the answer", |term| term.name());
+    let (answer, rival) = (name(pair.0), name(pair.1));
+    // The channel in which either fails by more of its floor.
+    let over = |effort: bool| {
+        let worse = if effort { left.effort.max(reverse.effort) } else { left.force.max(reverse.force) };
+        bench.floor(effort).map_or(0.0, |floor| worse / floor)
+    };
+    let effort = over(true) > over(false);
+    let channel = if effort { "drive's balance" } else { "force" };
+    let floor = bench.floor(effort).unwrap_or(0.0);
+    let size = |rest: &Rest| match if effort { rest.effort } else { rest.force } {
+        rest if rest < UNSEEN * floor => "too little to see".into(),
+        rest => format!("{} rms", rounded(rest, unit, 2)),
+    };
+    let noise = match floor {
+        floor if floor < PERFECT * bench.greatest(effort) => "next to none".into(),
+        floor => rounded(floor, unit, 2),
+    };
+    let seen = format!(
+        "If it is {answer}, a refitted {rival} misses the {channel} by {}; if it is {rival}, a refitted {answer} misses it \
+         by {} (the noise is {noise}).",
+        size(left),
+        size(reverse)
+    );
+    if left.energy.max(reverse.energy) >= DECIDES {
+        return seen;
+    }
+    match pair {
+        (Some(answer), Some(rival)) if is_equivalent(&answer, &rival) => {
+            format!("{seen} {}", separated_by(&answer, &rival))
+        }
+        _ => format!("{seen} That is too little: {}.", bench.wanted()),
+    }
+}
+
+/// The effect of `answer` that `rival` lacks, and the one that it has instead.
+fn differ(answer: &Model, rival: &Model) -> (Option<Term>, Option<Term>) {
+    let lacks = |model: &Model, term: &Term| {
+        model.terms.iter().all(|other| (other.name(), other.form) != (term.name(), term.form))
+    };
+    let only = |of: &Model, other: &Model| of.terms.iter().copied().find(|term| lacks(other, term));
+    (only(answer, rival), only(rival, answer))
+}

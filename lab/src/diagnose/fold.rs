@@ -1,0 +1,110 @@
+//! Two halves of the data, each judged by what the other half taught.
+//!
+//! Every trial is cut into stretches that belong to one half and the other in turn, so that early and late, deep and
+//! shallow are in both. Hidden states run through all of it; only the residuals are kept apart.
+
+use super::fit::{self, Data};
+use super::model::{Channels, Model, Rest};
+use super::study::Study;
+use super::whiten::Whitener;
+use crate::effects::Scene;
+
+/// Stretches a trial is cut into.
+const STRETCHES: f64 = 10.0;
+
+/// What a model leaves of data that its fit did not see.
+#[derive(Debug, Clone)]
+pub struct HeldOut {
+    /// Whitened energy over all rows.
+    pub energy: f64,
+    /// Residuals of every trial, each row by the values of the other half.
+    pub rests: Vec<Rest>,
+    /// The values that each half taught; none where nothing was fitted.
+    pub taught: Vec<Vec<f64>>,
+}
+
+/// Which half a moment belongs to.
+fn half(time: f64, duration: f64, trial: usize) -> usize {
+    let stretch = (STRETCHES * time / duration.max(f64::MIN_POSITIVE)).floor().max(0.0) as usize;
+    (stretch + trial) % 2
+}
+
+/// Fits `model` to either half from `start` and judges each by the other.
+#[must_use]
+pub fn held_out(study: &Study, whitener: &Whitener, model: &Model, start: &[f64], scene: &Scene) -> HeldOut {
+    let trials = &study.studio.trials;
+    let origins = whitener.origins();
+    let halves: Vec<usize> = origins
+        .iter()
+        .map(|row| {
+            let track = trials[row.trial].track(row.effort);
+            half(row.row as f64 * track.step, track.len() as f64 * track.step, row.trial)
+        })
+        .collect();
+    let values: Vec<Vec<f64>> = [0, 1]
+        .iter()
+        .map(|taught| {
+            let rows: Vec<bool> = halves.iter().map(|half| half == taught).collect();
+            let data = Data { trials, whitener, rows: Some(&rows) };
+            fit::fit(&data, model, start, scene).values
+        })
+        .collect();
+    frozen(study, whitener, model, &values, &halves)
+}
+
+/// Residuals of `model` with `values[h]` taught by half h, each row judged by the half it is not in.
+fn frozen(study: &Study, whitener: &Whitener, model: &Model, values: &[Vec<f64>], halves: &[usize]) -> HeldOut {
+    let trials = &study.studio.trials;
+    let by: Vec<Vec<Rest>> = values
+        .iter()
+        .map(|values| trials.iter().map(|trial| model.rest(values, trial, Channels::BOTH)).collect())
+        .collect();
+    let whites = [whitener.white(&by[0]), whitener.white(&by[1])];
+    let energy = halves.iter().enumerate().map(|(row, half)| whites[1 - half][row].powi(2)).sum();
+    let mix = |trial: usize, effort: bool| {
+        let pick = |rest: &Rest| if effort { rest.effort.clone() } else { rest.force.clone() };
+        let track = trials[trial].track(effort);
+        let (first, second) = (pick(&by[0][trial]), pick(&by[1][trial]));
+        let duration = track.len() as f64 * track.step;
+        let judged = (0..first.len())
+            .map(|at| if half(at as f64 * track.step, duration, trial) == 0 { second[at] } else { first[at] });
+        judged.collect()
+    };
+    let rests = (0..trials.len()).map(|trial| Rest { force: mix(trial, false), effort: mix(trial, true) }).collect();
+    HeldOut { energy, rests, taught: values.to_vec() }
+}
+
+/// The same for values that nothing was fitted to.
+#[must_use]
+pub fn as_given(study: &Study, whitener: &Whitener, model: &Model, values: &[f64]) -> HeldOut {
+    let rests: Vec<Rest> = study.studio.trials.iter().map(|trial| model.rest(values, trial, Channels::BOTH)).collect();
+    HeldOut { energy: fit::energy(&whitener.white(&rests)), rests, taught: Vec::new() }
+}
+
+/// Root mean square of the floor over the rows of a channel that were seen whole; `None` where the channel is not there.
+#[must_use]
+pub fn floor(study: &Study, whitener: &Whitener, effort: bool) -> Option<f64> {
+    let floor = if effort { whitener.effort.as_ref()? } else { whitener.force.as_ref()? };
+    let rest = |values: &Vec<f64>| {
+        if effort {
+            Rest { force: Vec::new(), effort: values.clone() }
+        } else {
+            Rest { force: values.clone(), effort: Vec::new() }
+        }
+    };
+    Some(rms(study, &floor.deviation.iter().map(rest).collect::<Vec<_>>(), effort))
+}
+
+/// Root mean square over the rows of a channel that were seen whole.
+#[must_use]
+pub fn rms(study: &Study, rests: &[Rest], effort: bool) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0f64);
+    for (trial, rest) in study.studio.trials.iter().zip(rests) {
+        let values = if effort { &rest.effort } else { &rest.force };
+        for (value, _) in values.iter().zip(&trial.track(effort).seen).filter(|(_, seen)| **seen) {
+            sum += value * value;
+            count += 1.0;
+        }
+    }
+    (sum / count.max(1.0)).sqrt()
+}

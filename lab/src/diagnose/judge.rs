@@ -1,0 +1,254 @@
+//! From the search to the verdict: what is named, what is left, what cannot be told apart.
+
+use rayon::prelude::*;
+
+use super::answer::Verdict;
+use super::fit::{self, Data, Fit};
+use super::fold::{self, HeldOut};
+use super::model::{Model, Term, index};
+use super::score::Remainder;
+use super::select::{self, ALARM, Search};
+use super::study::{Stand, Study};
+
+/// What came out of a search.
+pub struct Judgement {
+    /// In a word.
+    pub verdict: Verdict,
+    /// The named effects, in order of evidence; empty unless the verdict is explained or partly so.
+    pub named: Vec<Named>,
+    /// What this data cannot tell from each of the named.
+    pub rivals: Vec<Rival>,
+    /// Share of the whitened energy above the floor that the named effects take.
+    pub share: f64,
+    /// Whether structure is left.
+    pub left: bool,
+    /// The nominal model, fitted under the last stand's floor.
+    pub nominal: Fit,
+    /// The rig file as given, without a fit.
+    pub as_given: HeldOut,
+    /// The nominal model on data it did not see.
+    pub refitted: HeldOut,
+    /// The last stand's model on data it did not see.
+    pub improved: HeldOut,
+}
+
+/// A named effect.
+#[derive(Debug, Clone)]
+pub struct Named {
+    /// Which.
+    pub term: Term,
+    /// Its place among the terms of the last model.
+    pub at: usize,
+    /// Probability of as much by chance among all effects.
+    pub p_value: f64,
+    /// Whitened energy that is there without it.
+    pub gain: f64,
+    /// The model without it on data it did not see.
+    pub without: HeldOut,
+}
+
+/// What this data cannot tell from the answer.
+#[derive(Debug, Clone)]
+pub struct Rival {
+    /// The effect that it would stand for.
+    pub instead_of: Term,
+    /// The rival.
+    pub term: Term,
+    /// Model and values with the rival in its place.
+    pub model: Model,
+    /// Fitted values of that model.
+    pub fit: Fit,
+    /// Energy that it takes by chance, beyond what the effect that it would stand for takes by chance.
+    pub chance: f64,
+}
+
+/// Share of the energy above the floor that named effects have to take where something is left beside them.
+const MOSTLY: f64 = 0.7;
+
+/// Least excess of energy, over what twins leave, that is called structure.
+const NOTABLE: f64 = 0.015;
+
+/// Least power over the floor's that is called structure: a residual seven per cent above what the sensors leave.
+const BEYOND: f64 = 1.15;
+
+/// Root mean square over the floor's beyond which something is left, whatever its pattern.
+const FAR: f64 = 2.0;
+
+/// Growth of the root mean square from refitted to given values that is called a wrong value.
+const WRONG_VALUES: f64 = 1.05;
+
+/// Growth of the root mean square on unseen data in either channel that no explanation may bring.
+const WORSE: f64 = 1.05;
+
+/// Energy by which a rival may stand behind, for chance: 12 of a white energy is a probability of 5e-4 for one value.
+const CLOSE: f64 = 12.0;
+
+/// Share of an effect's own energy by which a rival may stand behind: laws are never quite those of nature.
+const ALIKE: f64 = 0.06;
+
+/// Rivals that are fitted in full.
+const TRIED: usize = 10;
+
+/// Judges `search`; exchanges an effect for a rival that does better.
+pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<Judgement> {
+    say("what else would explain it");
+    let mut rivals = Vec::new();
+    for _ in 0..3 {
+        rivals = rivals_of(study, search);
+        let stand = &search.rounds.last()?.stand;
+        let better = rivals.iter().filter(|rival| worth(rival) + 8.0 < stand.view.energy + free(&rival.instead_of));
+        let Some(better) = better.min_by(|a, b| worth(a).total_cmp(&worth(b))).cloned() else { break };
+        say(&format!("{} explains more than {}", better.term.name(), better.instead_of.name()));
+        select::exchange(study, search, &better.model, &better.fit.values, say);
+    }
+    let stand = &search.rounds.last()?.stand;
+    let nominal = study.fit(&study.nominal, &search.rounds.first()?.stand.values, &stand.whitener);
+    let floor = select::mean(stand);
+    let taken = (nominal.energy - floor).max(f64::MIN_POSITIVE);
+    let share = ((nominal.energy - stand.view.energy) / taken).clamp(0.0, 1.0);
+    let structure = search.rounds.last()?.structure;
+    let texture = stand.view.textures.iter().map(|texture| texture.gain).fold(0.0, f64::max);
+    let excess = (stand.view.energy - floor).max(texture) / stand.view.energy.max(f64::MIN_POSITIVE);
+    // What twins leave can differ in its pattern; where it is no larger, nothing that matters is left.
+    let improved = fold::held_out(study, &stand.whitener, &stand.model, &stand.values, &stand.scene);
+    let times = [false, true].into_iter().filter_map(|effort| {
+        let floor = fold::floor(study, &stand.whitener, effort)?;
+        Some(fold::rms(study, &improved.rests, effort) / floor.max(f64::MIN_POSITIVE))
+    });
+    let times = times.fold(0.0, f64::max);
+    let left = times > FAR.max(study.doubt(&stand.values).sqrt())
+        || times > 1.0
+            && structure.p_value < ALARM
+            && excess > NOTABLE
+            && structure.energy_ratio > BEYOND.max(study.doubt(&stand.values));
+    let as_given = fold::as_given(study, &stand.whitener, &study.nominal, &study.given);
+    let verdict = match (stand.model.terms.len() == study.nominal.terms.len(), left) {
+        (true, true) => Verdict::Unknown,
+        (true, false) if wrong_values(study, stand, nominal.energy) => Verdict::Parameters,
+        (true, false) => Verdict::NoMismatch,
+        (false, false) => Verdict::Explained,
+        (false, true) if share >= MOSTLY => Verdict::PartlyExplained,
+        (false, true) => Verdict::Unknown,
+    };
+    let held = |model: &Model, values: &[f64]| fold::held_out(study, &stand.whitener, model, values, &stand.scene);
+    let refitted = held(&study.nominal, &nominal.values);
+    // A law that makes unseen data worse is no explanation, whatever it does to seen ones.
+    let worse = improved.energy > refitted.energy
+        || [false, true].into_iter().any(|effort| {
+            let rms = |held: &HeldOut| fold::rms(study, &held.rests, effort);
+            rms(&improved) > WORSE * rms(&refitted)
+        });
+    let verdict = match verdict {
+        Verdict::Explained | Verdict::PartlyExplained if worse => Verdict::Unknown,
+        verdict => verdict,
+    };
+    let is_named = matches!(verdict, Verdict::Explained | Verdict::PartlyExplained);
+    let named = if is_named { named(study, search) } else { Vec::new() };
+    let rivals = if is_named { close(stand, &named, rivals) } else { Vec::new() };
+    let left = left || verdict == Verdict::Unknown;
+    Some(Judgement { verdict, named, rivals, share, left, nominal, as_given, refitted, improved })
+}
+
+/// Whether the given values leave more than the fitted ones, beyond an encoder's start within its step.
+fn wrong_values(study: &Study, stand: &Stand, fitted: f64) -> bool {
+    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
+    let half = 0.5 * study.studio.raws.iter().map(|raw| raw.figures.position.resolution).fold(0.0, f64::max);
+    let moved = stand.values[index::SURFACE] - study.given[index::SURFACE];
+    let mut values = study.given.clone();
+    // Timings and where each trial's encoder starts are no values of the rig file.
+    for at in [index::FORCE_TIMING, index::EFFORT_TIMING].into_iter().chain(index::SHARED..study.nominal.nominals()) {
+        values[at] = stand.values[at];
+    }
+    values[index::SURFACE] += moved.clamp(-half, half);
+    let given = data.energy(&study.nominal, &values);
+    given > WRONG_VALUES * WRONG_VALUES * fitted && given > fitted + 30.0
+}
+
+fn free(term: &Term) -> f64 {
+    4.0 * term.parameters().iter().filter(|parameter| !parameter.fixed).count() as f64
+}
+
+fn worth(rival: &Rival) -> f64 {
+    rival.fit.energy + free(&rival.term) + 1.5 * rival.chance
+}
+
+/// Every effect in the place of each term of `stand`'s model, fitted.
+fn rivals_of(study: &Study, search: &Search) -> Vec<Rival> {
+    let (Some(first), Some(last)) = (search.rounds.first(), search.rounds.last()) else { return Vec::new() };
+    let stand = &last.stand;
+    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
+    let mut rivals = Vec::new();
+    for at in study.nominal.terms.len()..stand.model.terms.len() {
+        let (base, values) = without(&stand.model, &stand.values, at);
+        let fitted = fit::fit(&data, &base, &values, &stand.scene);
+        let remainder = Remainder::of(data, &base, &fitted.values, &stand.scene);
+        let mut scores = remainder.scores(&stand.scene);
+        scores.retain(|score| base.terms.iter().all(|term| term.name() != score.term.name()));
+        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        scores.truncate(TRIED);
+        let own = stand.model.terms[at];
+        let tried = scores.par_iter().filter(|score| score.term.name() != own.name() || score.term.form != own.form);
+        rivals.par_extend(tried.map(|score| {
+            let model = base.with(score.term);
+            let start: Vec<f64> = fitted.values.iter().chain(&score.values).copied().collect();
+            let fit = fit::fit(&data, &model, &start, &stand.scene);
+            let taken = (fitted.energy - fit.energy).max(0.0);
+            let chance = |term: &Term| select::by_chance(&first.stand, term) + select::hidden(term) * taken;
+            let chance = chance(&score.term) - chance(&own);
+            Rival { instead_of: own, term: score.term, model, fit, chance }
+        }));
+    }
+    rivals
+}
+
+/// A model without one of its terms.
+fn without(model: &Model, values: &[f64], at: usize) -> (Model, Vec<f64>) {
+    let mut fewer = model.clone();
+    let term = fewer.terms.remove(at);
+    let start = model.start_of(at);
+    let mut kept = values.to_vec();
+    kept.drain(start..start + term.all_parameters(model.trials()).len());
+    (fewer, kept)
+}
+
+fn named(study: &Study, search: &Search) -> Vec<Named> {
+    let Some(last) = search.rounds.last() else { return Vec::new() };
+    let stand = &last.stand;
+    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
+    let mut named: Vec<Named> = (study.nominal.terms.len()..stand.model.terms.len())
+        .into_par_iter()
+        .map(|at| {
+            let term = stand.model.terms[at];
+            let (base, values) = without(&stand.model, &stand.values, at);
+            let fitted = fit::fit(&data, &base, &values, &stand.scene);
+            let without = fold::held_out(study, &stand.whitener, &base, &fitted.values, &stand.scene);
+            // The round in which it was found, or the one whose choice it replaced.
+            let found =
+                search.rounds.iter().flat_map(|round| &round.candidates).filter(|c| c.term.name() == term.name());
+            let p_value = found.map(|candidate| candidate.p_any).fold(f64::INFINITY, f64::min).min(ALARM);
+            Named { term, at, p_value, gain: fitted.energy - stand.view.energy, without }
+        })
+        .collect();
+    named.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    named
+}
+
+/// Those rivals that the data do not refute; one an effect.
+fn close(stand: &Stand, named: &[Named], mut rivals: Vec<Rival>) -> Vec<Rival> {
+    let rows: f64 = stand.whitener.origins().len() as f64;
+    let inflation = (select::mean(stand) / rows.max(1.0)).max(1.0);
+    rivals.sort_by(|a, b| a.fit.energy.total_cmp(&b.fit.energy));
+    let mut kept: Vec<Rival> = Vec::new();
+    for rival in rivals {
+        let gain = named.iter().find(|n| n.term.name() == rival.instead_of.name()).map_or(0.0, |n| n.gain);
+        let margin = CLOSE * inflation + ALIKE * gain;
+        let other = named.iter().all(|n| n.term.name() != rival.term.name());
+        let fresh = kept.iter().all(|k| k.term.name() != rival.term.name());
+        // What leaves almost as much as nothing at all is no rival.
+        let explains = rival.fit.energy < stand.view.energy + 0.7 * gain;
+        if other && fresh && explains && rival.fit.energy - stand.view.energy < margin {
+            kept.push(rival);
+        }
+    }
+    kept
+}

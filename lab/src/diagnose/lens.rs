@@ -1,0 +1,221 @@
+//! How sharply the analysis looks: one smoothing filter for every channel.
+//!
+//! Every channel passes the same Gaussian, so that a linear law between them stays what it was. Velocity and
+//! acceleration are its derivatives: x, v, a, F and effort are all smoothed by exactly the same filter.
+
+use super::raw::Raw;
+use crate::rig::Rig;
+
+/// The filter and the clock of the analysis.
+#[derive(Debug, Clone)]
+pub struct Lens {
+    /// Width of the Gaussian, s.
+    pub blur: f64,
+    /// Raw rows a row of the analysis.
+    pub stride: usize,
+    /// Seconds of a raw row.
+    pub period: f64,
+    /// Half the support of the filter, rows.
+    reach: usize,
+    level: Vec<f64>,
+    slope: Vec<f64>,
+    bend: Vec<f64>,
+    held: Vec<f64>,
+    held_slope: Vec<f64>,
+}
+
+/// Width of a Gaussian whose -3 dB frequency is f: `WIDTH / f`.
+const WIDTH: f64 = 0.132_5;
+
+/// Rows of the analysis a period of the -3 dB frequency. The Gaussian is down to a ninth where they alias.
+const ROWS: f64 = 5.0;
+
+/// Deviation that position noise may add to the predicted force, over that of the force noise. A coarse encoder hides
+/// true motion below its step, which the drive's answer to its own steps makes: what cannot be seen is smoothed away.
+const SHARE: f64 = 0.6;
+
+/// Widths after which the Gaussian ends: 3e-4 of its peak.
+const SUPPORT: f64 = 4.0;
+
+/// Rows of the analysis that all trials together should have, unless that would blind it.
+const BUDGET: f64 = 9_000.0;
+
+impl Lens {
+    /// The sharpest filter for the contact: what position noise does to the predicted force stays near what force noise
+    /// does, within what the clock allows.
+    #[must_use]
+    pub fn for_contact(rig: &Rig, raws: &[Raw]) -> Self {
+        let (position, force) = noises(raws);
+        let corner = rig.contact.map_or(f64::INFINITY, |contact| {
+            let spring = contact.stiffness * position;
+            let left = ((SHARE * force).powi(2) - spring * spring).max(0.0);
+            let slope = contact.damping * position * std::f64::consts::TAU / 3f64.sqrt();
+            if slope > 0.0 && force > 0.0 { left.sqrt() / slope } else { f64::INFINITY }
+        });
+        Self::cornered(raws, corner, 0.02, BUDGET)
+    }
+
+    /// The sharpest filter for the drive: the same of what position noise does to inertia times acceleration.
+    #[must_use]
+    pub fn for_drive(rig: &Rig, raws: &[Raw]) -> Self {
+        let (position, force) = noises(raws);
+        let shaken = rig.drive.map_or(0.0, |drive| drive.inertia * position);
+        // Where no force is measured, the effort itself says what the balance is good for: its noise, or a hundredth of it.
+        // A third of it, for nothing else holds the inertia against the noise of the acceleration.
+        let force = if force > 0.0 { force } else { 0.33 * raws.iter().map(effort_noise).fold(0.0, f64::max) };
+        let corner = match (shaken > 0.0, force > 0.0) {
+            (true, true) => (3.0 * 5f64.sqrt() * force / shaken).sqrt() / std::f64::consts::TAU,
+            _ => f64::INFINITY,
+        };
+        Self::cornered(raws, corner, 0.01, 0.5 * BUDGET)
+    }
+
+    /// `corner` in Hz as far as clock and `budget` of rows allow, not below the share `least` of the rate.
+    fn cornered(raws: &[Raw], corner: f64, least: f64, budget: f64) -> Self {
+        let period = raws.first().map_or(1.0, |raw| raw.period);
+        let rate = period.recip();
+        let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
+        let affordable = budget / (ROWS * seconds.max(period));
+        let corner = corner.min(affordable).max(least * rate).min(0.2 * rate);
+        Self::new(WIDTH / corner, period, ((rate / (ROWS * corner)).round() as usize).max(1))
+    }
+
+    /// A Gaussian of `blur` seconds over rows of `period` seconds, looked at every `stride` rows.
+    #[must_use]
+    pub fn new(blur: f64, period: f64, stride: usize) -> Self {
+        let reach = (SUPPORT * blur / period).ceil().max(1.0) as usize;
+        let kernels = |shift: f64| Kernels::new(blur / period, reach, shift, period);
+        let (plain, held) = (kernels(0.0), kernels(0.5));
+        Self {
+            blur,
+            stride,
+            period,
+            reach,
+            level: plain.level,
+            slope: plain.slope,
+            bend: plain.bend,
+            held: held.level,
+            held_slope: held.slope,
+        }
+    }
+
+    /// The same, looking at every row through `part` of the blur: as close to the motion itself as noise lets one see.
+    #[must_use]
+    pub fn finer(&self, part: f64) -> Self {
+        Self::new((part * self.blur).max(0.6 * self.period), self.period, 1)
+    }
+
+    /// Seconds between two rows of the analysis.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.period * self.stride as f64
+    }
+
+    /// -3 dB frequency, Hz.
+    #[must_use]
+    pub fn corner(&self) -> f64 {
+        WIDTH / self.blur
+    }
+
+    /// Rows at either end, or beside a bad one, that the filter spoils.
+    #[must_use]
+    pub fn reach(&self) -> usize {
+        self.reach
+    }
+
+    /// What white noise of deviation one on the raw rows leaves in level, velocity and acceleration.
+    #[must_use]
+    pub fn noise(&self) -> [f64; 3] {
+        [&self.level, &self.slope, &self.bend].map(|kernel| kernel.iter().map(|tap| tap * tap).sum::<f64>().sqrt())
+    }
+
+    /// The smoothed values.
+    #[must_use]
+    pub fn level(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.level, values)
+    }
+
+    /// Their first derivative.
+    #[must_use]
+    pub fn slope(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.slope, values)
+    }
+
+    /// Their second derivative.
+    #[must_use]
+    pub fn bend(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.bend, values)
+    }
+
+    /// The smoothed course of values that are held from their row to the next.
+    #[must_use]
+    pub fn held(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.held, values)
+    }
+
+    /// Its first derivative.
+    #[must_use]
+    pub fn held_slope(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.held_slope, values)
+    }
+
+    fn through(&self, kernel: &[f64], values: &[f64]) -> Vec<f64> {
+        let last = values.len() as isize - 1;
+        let reach = self.reach as isize;
+        (0..values.len())
+            .step_by(self.stride)
+            .map(|at| {
+                let from = at as isize - reach;
+                if from >= 0 && at as isize + reach <= last {
+                    let piece = &values[from as usize..from as usize + kernel.len()];
+                    return kernel.iter().zip(piece).map(|(tap, value)| tap * value).sum();
+                }
+                // Beyond the ends the course is taken to go on as its end stands.
+                let value = |offset: usize| values[(from + offset as isize).clamp(0, last) as usize];
+                kernel.iter().enumerate().map(|(offset, tap)| tap * value(offset)).sum()
+            })
+            .collect()
+    }
+}
+
+fn effort_noise(raw: &Raw) -> f64 {
+    let rows = raw.effort.as_deref().unwrap_or_default();
+    let size = (rows.iter().map(|effort| effort * effort).sum::<f64>() / rows.len().max(1) as f64).sqrt();
+    raw.figures.effort.map_or(0.0, |effort| effort.noise).max(0.01 * size)
+}
+
+/// Greatest noise of position and force.
+fn noises(raws: &[Raw]) -> (f64, f64) {
+    let noise = |raw: &Raw| (raw.figures.position.noise, raw.figures.force.map_or(0.0, |force| force.noise));
+    raws.iter().map(noise).fold((0.0f64, 0.0f64), |a, b| (a.0.max(b.0), a.1.max(b.1)))
+}
+
+struct Kernels {
+    level: Vec<f64>,
+    slope: Vec<f64>,
+    bend: Vec<f64>,
+}
+
+impl Kernels {
+    /// Taps for rows -reach..=reach, each of which lies `shift` rows later than its number says. Exact for polynomials of
+    /// degree two, however coarse the rows: level of 1 and x, slope of x, bend of x^2 come out as they should.
+    fn new(width: f64, reach: usize, shift: f64, period: f64) -> Self {
+        let places: Vec<f64> = (0..=2 * reach).map(|tap| tap as f64 - reach as f64 + shift).collect();
+        let bell: Vec<f64> = places.iter().map(|x| (-0.5 * (x / width).powi(2)).exp()).collect();
+        let total: f64 = bell.iter().sum();
+        let moment =
+            |taps: &[f64], power: i32| taps.iter().zip(&places).map(|(tap, x)| tap * x.powi(power)).sum::<f64>();
+        let mean = moment(&bell, 1) / total;
+        let level: Vec<f64> = bell.iter().map(|tap| tap / total).collect();
+        let odd: Vec<f64> = bell.iter().zip(&places).map(|(tap, x)| tap * (x - mean)).collect();
+        let rise = moment(&odd, 1) * period;
+        let slope = odd.iter().map(|tap| tap / rise).collect();
+        let spread = moment(&level, 2) - mean * mean;
+        let even: Vec<f64> = level.iter().zip(&places).map(|(tap, x)| tap * ((x - mean).powi(2) - spread)).collect();
+        let curve = 0.5 * moment(&even, 2) * period * period;
+        let bend = even.iter().map(|tap| tap / curve).collect();
+        // A bell that lies between the rows has its mean a little beside zero: tilted, it has it there.
+        let level = level.iter().zip(&places).map(|(tap, x)| tap * (1.0 - mean * (x - mean) / spread)).collect();
+        Self { level, slope, bend }
+    }
+}

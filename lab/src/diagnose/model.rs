@@ -1,0 +1,318 @@
+//! What the simulation says of a recorded motion: the nominal rig and the effects added to it.
+
+use super::track::{Track, Trial};
+use crate::effects::contact_law::{Active, Along};
+use crate::effects::{Effect, Memory, Parameter, Place, Push, Reading, Stage};
+use crate::rig::{Contact, Drive};
+
+/// An effect in a model.
+#[derive(Clone, Copy)]
+pub struct Term {
+    /// What acts.
+    pub effect: &'static dyn Effect,
+    /// By which law.
+    pub form: usize,
+}
+
+impl Term {
+    /// Its parameters.
+    #[must_use]
+    pub fn parameters(&self) -> &'static [Parameter] {
+        self.effect.card().forms[self.form].parameters
+    }
+
+    /// Its parameters and, after them, for each trial but the first those that each trial has for itself.
+    #[must_use]
+    pub fn all_parameters(&self, trials: usize) -> Vec<Parameter> {
+        let each = self.parameters().iter().filter(|parameter| parameter.each_trial);
+        let more = (1..trials).flat_map(|_| each.clone());
+        self.parameters().iter().chain(more).copied().collect()
+    }
+
+    /// Values in the layout of [`Term::all_parameters`] from those of its own parameters: alike in every trial.
+    #[must_use]
+    pub fn spread(&self, own: &[f64], trials: usize) -> Vec<f64> {
+        let each = self.parameters().iter().zip(own).filter(|(parameter, _)| parameter.each_trial);
+        let more = (1..trials).flat_map(|_| each.clone().map(|(_, value)| *value));
+        own.iter().copied().chain(more).collect()
+    }
+
+    /// Values of its own parameters in trial `trial`, from those in the layout of [`Term::all_parameters`].
+    #[must_use]
+    pub fn in_trial(&self, all: &[f64], trial: usize) -> Vec<f64> {
+        let parameters = self.parameters();
+        let each = parameters.iter().filter(|parameter| parameter.each_trial).count();
+        let mut next = parameters.len() + trial.saturating_sub(1) * each;
+        let mut pick = |at: usize| {
+            if trial == 0 || !parameters[at].each_trial {
+                return all[at];
+            }
+            next += 1;
+            all[next - 1]
+        };
+        (0..parameters.len()).map(&mut pick).collect()
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.effect.card().name
+    }
+}
+
+impl std::fmt::Debug for Term {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.name(), self.effect.card().forms[self.form].name)
+    }
+}
+
+/// Index of the nominal values in a parameter vector.
+pub mod index {
+    /// Stiffness.
+    pub const STIFFNESS: usize = 0;
+    /// Damping of the contact.
+    pub const DAMPING: usize = 1;
+    /// Surface.
+    pub const SURFACE: usize = 2;
+    /// Force late against position, s: within a quarter of a sample, what no clock settles.
+    pub const FORCE_TIMING: usize = 3;
+    /// Inertia.
+    pub const INERTIA: usize = 4;
+    /// Viscous friction of the drive.
+    pub const VISCOUS: usize = 5;
+    /// Effort late against position, s: within half a sample, what its hold leaves open.
+    pub const EFFORT_TIMING: usize = 6;
+    /// Nominal values that all trials share.
+    pub const SHARED: usize = 7;
+}
+
+/// The structure of a simulation. Its values are a vector: the nominal ones, then those of each term in turn.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Whether there is a force channel with a contact to predict it, and whether that pulls.
+    pub contact: Option<bool>,
+    /// Whether there is an effort channel with a drive to predict it.
+    pub drive: bool,
+    /// Stiffness of the rig file.
+    pub given_stiffness: f64,
+    /// Inertia of the rig file: the fit stays within a factor of four of it, or physics that is missing empties it.
+    pub given_inertia: f64,
+    /// What the force sensor shows at rest by the rig file.
+    pub force_zero: f64,
+    /// How far the surface may lie elsewhere in each trial after the first: an encoder starts anywhere within its step.
+    pub shifts: Vec<f64>,
+    /// Effects.
+    pub terms: Vec<Term>,
+}
+
+/// What the model leaves of one trial.
+#[derive(Debug, Clone, Default)]
+pub struct Rest {
+    /// Measured minus predicted force.
+    pub force: Vec<f64>,
+    /// What is left of the drive's balance.
+    pub effort: Vec<f64>,
+}
+
+/// Which channels are asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Channels {
+    /// The force reading.
+    pub force: bool,
+    /// The drive's balance.
+    pub effort: bool,
+}
+
+impl Channels {
+    /// Both.
+    pub const BOTH: Self = Self { force: true, effort: true };
+}
+
+impl Model {
+    /// The same with one more effect.
+    #[must_use]
+    pub fn with(&self, term: Term) -> Self {
+        let mut terms = self.terms.clone();
+        terms.push(term);
+        Self { terms, ..self.clone() }
+    }
+
+    /// Length of the nominal values.
+    #[must_use]
+    pub fn nominals(&self) -> usize {
+        index::SHARED + self.shifts.len()
+    }
+
+    /// Trials.
+    #[must_use]
+    pub fn trials(&self) -> usize {
+        1 + self.shifts.len()
+    }
+
+    /// Surface of trial `trial`.
+    #[must_use]
+    pub fn surface(&self, values: &[f64], trial: usize) -> f64 {
+        values[index::SURFACE] + if trial == 0 { 0.0 } else { values[index::SHARED + trial - 1] }
+    }
+
+    /// Where the values of term `at` begin.
+    #[must_use]
+    pub fn start_of(&self, at: usize) -> usize {
+        let trials = self.trials();
+        self.nominals() + self.terms[..at].iter().map(|term| term.all_parameters(trials).len()).sum::<usize>()
+    }
+
+    /// The channels that an effect at `place` reaches.
+    #[must_use]
+    pub fn reach(&self, place: Place) -> Channels {
+        match place {
+            Place::Contact => Channels { force: self.contact.is_some(), effort: false },
+            Place::Drive => Channels { force: false, effort: self.drive },
+            Place::Sensor => Channels { force: self.contact.is_some(), effort: self.drive && self.contact.is_some() },
+        }
+    }
+
+    /// Whether there is anything for an effect at `place` to act on.
+    #[must_use]
+    pub fn takes(&self, place: Place) -> bool {
+        let reach = self.reach(place);
+        reach.force || reach.effort
+    }
+
+    /// What the model with `values` leaves of `trial`.
+    #[must_use]
+    pub fn rest(&self, values: &[f64], trial: &Trial, channels: Channels) -> Rest {
+        let (force, effort) = (channels.force, channels.effort && self.drive);
+        let force = if force { self.force_rest(values, trial.number, &trial.contact) } else { Vec::new() };
+        let effort = if effort { self.effort_rest(values, trial.number, &trial.drive) } else { Vec::new() };
+        Rest { force, effort }
+    }
+
+    fn force_rest(&self, values: &[f64], trial: usize, track: &Track) -> Vec<f64> {
+        let (Some(bilateral), Some(measured), Some(rate)) = (self.contact, &track.force, &track.force_rate) else {
+            return Vec::new();
+        };
+        let reading = self.reading(values, trial, track, &self.contact_force(values, trial, track, bilateral));
+        // A fraction of a sample: its first order is all of it, and leaves the band as it is.
+        let late = values[index::FORCE_TIMING];
+        let measured = measured.iter().zip(rate).map(|(force, rate)| force + late * rate);
+        measured.zip(&reading).map(|(measured, reading)| measured - reading).collect()
+    }
+
+    fn effort_rest(&self, values: &[f64], trial: usize, track: &Track) -> Vec<f64> {
+        let Some(measured) = &track.force else { return self.balance(values, trial, track, |_| 0.0) };
+        // What the sensor makes of the force on the tool is taken off the reading to get at that force.
+        let bilateral = self.contact.filter(|_| self.senses());
+        let distortion = bilateral.map(|bilateral| {
+            let borne = self.contact_force(values, trial, track, bilateral);
+            let reading = self.reading(values, trial, track, &borne);
+            reading.iter().zip(&borne).map(|(reading, borne)| reading - borne).collect::<Vec<f64>>()
+        });
+        let taken = |at: usize| distortion.as_ref().map_or(self.force_zero, |taken| taken[at]);
+        self.balance(values, trial, track, |at| measured[at] - taken(at))
+    }
+
+    /// Whether `effect` is among the terms already and cannot be there twice. Relaxation can: it has as many times as it likes.
+    #[must_use]
+    pub fn holds(&self, effect: &dyn Effect) -> bool {
+        let same = |term: &&Term| term.name() == effect.card().name;
+        self.terms.iter().filter(same).count() >= effect.card().most
+    }
+
+    /// Whether an effect of the sensor is among the terms.
+    #[must_use]
+    pub fn senses(&self) -> bool {
+        self.terms.iter().any(|term| term.effect.card().place == Place::Sensor)
+    }
+
+    /// Force between tool and environment along the motion.
+    #[must_use]
+    pub fn contact_force(&self, values: &[f64], trial: usize, track: &Track, bilateral: bool) -> Vec<f64> {
+        let contact = Contact {
+            surface: self.surface(values, trial),
+            stiffness: values[index::STIFFNESS],
+            damping: values[index::DAMPING],
+            bilateral,
+        };
+        let acting = self.at(Place::Contact, values, trial);
+        let actives: Vec<Active<'_>> = acting.iter().map(active).collect();
+        let mut along = Along::new(contact, &actives);
+        (0..track.len())
+            .map(|at| {
+                let step = if at == 0 { 0.0 } else { track.step };
+                let (position, velocity) = (track.position[at], track.velocity[at]);
+                along.step(at as f64 * track.step, step, position, velocity, track.acceleration[at], track.blur)
+            })
+            .collect()
+    }
+
+    /// What the sensor shows of `borne`.
+    #[must_use]
+    pub fn reading(&self, values: &[f64], trial: usize, track: &Track, borne: &[f64]) -> Vec<f64> {
+        let mut force = borne.to_vec();
+        let acceleration = &track.acceleration;
+        let mut reading = Reading { start: 0.0, step: track.step, blur: track.blur, acceleration, force: &mut force };
+        let mut sensors = self.at(Place::Sensor, values, trial);
+        sensors.sort_by_key(|(term, _)| term.effect.card().stage);
+        for (term, values) in &sensors {
+            term.effect.read(term.form, values, &mut reading);
+        }
+        force.iter_mut().for_each(|force| *force += self.force_zero);
+        force
+    }
+
+    /// What is left of the drive's balance, the force on the tool being `force`.
+    #[must_use]
+    pub fn balance(&self, values: &[f64], trial: usize, track: &Track, force: impl Fn(usize) -> f64) -> Vec<f64> {
+        let (Some(effort), Some(rate)) = (&track.effort, &track.effort_rate) else { return Vec::new() };
+        let drive = Drive { inertia: values[index::INERTIA], viscous: values[index::VISCOUS] };
+        let late = values[index::EFFORT_TIMING];
+        let mut acting = self.at(Place::Drive, values, trial);
+        acting.sort_by_key(|(term, _)| term.effect.card().stage);
+        let mut memories: Vec<Memory> = vec![Memory::default(); acting.len()];
+        let (mut commanded, mut transmitted) = (0.0, 0.0);
+        let mut rest: Vec<f64> = (0..track.len())
+            .map(|at| {
+                let mut push = Push {
+                    time: at as f64 * track.step,
+                    step: if at == 0 { 0.0 } else { track.step },
+                    position: track.position[at],
+                    velocity: track.velocity[at],
+                    acceleration: track.acceleration[at],
+                    blur: track.blur,
+                    speed_noise: track.speed_noise,
+                    still: track.still[at],
+                    force: force(at),
+                    effort: effort[at] - late * rate[at],
+                    inertia: drive.inertia,
+                    viscous: drive.viscous,
+                    resistance: 0.0,
+                };
+                for ((term, values), memory) in acting.iter().zip(&mut memories) {
+                    term.effect.push(term.form, values, memory, &mut push);
+                }
+                commanded += effort[at] * effort[at];
+                transmitted += push.effort * push.effort;
+                push.rest()
+            })
+            .collect();
+        if acting.iter().any(|(term, _)| term.effect.card().stage == Stage::Transmission) {
+            // A drive that transmits nothing to a tool that weighs nothing balances perfectly. What is left is counted in
+            // shares of what is transmitted, and that is no way out.
+            let share = (commanded / f64::max(transmitted, f64::MIN_POSITIVE)).sqrt();
+            rest.iter_mut().for_each(|rest| *rest *= share);
+        }
+        rest
+    }
+
+    /// The terms at `place` with their values in trial `trial`.
+    #[must_use]
+    pub fn at(&self, place: Place, values: &[f64], trial: usize) -> Vec<(Term, Vec<f64>)> {
+        let here = self.terms.iter().enumerate().filter(|(_, term)| term.effect.card().place == place);
+        here.map(|(at, term)| (*term, term.in_trial(&values[self.start_of(at)..], trial))).collect()
+    }
+}
+
+fn active((term, values): &(Term, Vec<f64>)) -> Active<'_> {
+    Active { effect: term.effect, form: term.form, values }
+}
