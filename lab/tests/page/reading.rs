@@ -1,13 +1,6 @@
 //! What a page says, read back.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
-use palpate_lab::page::Page;
-
-pub fn written(page: &Page) -> String {
-    let mut out = Vec::new();
-    page.write(&mut out).expect("a vector takes everything");
-    String::from_utf8(out).expect("a page is UTF-8")
-}
 
 pub fn bytes(html: &str, id: &str) -> Vec<u8> {
     let tag = format!(r#"id="{id}">"#);
@@ -22,10 +15,6 @@ pub fn floats(html: &str, id: &str) -> Vec<f32> {
 
 pub fn doubles(html: &str, id: &str) -> Vec<f64> {
     bytes(html, id).as_chunks().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect()
-}
-
-pub fn bits(values: &[f32]) -> Vec<u32> {
-    values.iter().map(|value| value.to_bits()).collect()
 }
 
 /// What a reader sees without scripts, on one line.

@@ -1,0 +1,49 @@
+//! The same pad in other units, on slower, unsteady and broken clocks.
+
+use crate::bench::{BENCH, Case, FADES, Size, names};
+
+/// [`FADES`] on a bench of another size.
+fn fades(size: Size) -> Case {
+    let stiffness = 60.0 * size.newton / size.metre;
+    let table = FADES.replace("branch_stiffness_n_m = 60", &format!("branch_stiffness_n_m = {stiffness:e}"));
+    Case::led(size, &table)
+}
+
+#[test]
+fn on_micrometres_and_nanonewtons() {
+    names(&fades(Size { metre: 1e-4, newton: 1e-9, ..BENCH }).diagnose(&[]), "stress_relaxation");
+}
+
+#[test]
+fn on_metres_and_kilonewtons() {
+    names(&fades(Size { metre: 1e2, newton: 1e3, ..BENCH }).diagnose(&[]), "stress_relaxation");
+}
+
+#[test]
+#[ignore = "\"unknown\" is the verdict although the residual of refitted values is below the floor"]
+fn at_fifty_samples_a_second() {
+    names(&fades(Size { rate_hz: 50.0, duration_s: 10.0, ..BENCH }).diagnose(&[]), "stress_relaxation");
+}
+
+#[test]
+fn with_a_quarter_of_a_second_lost() {
+    let case = fades(BENCH);
+    case.rewrite(|row, _| !(900..1000).contains(&row));
+    names(&case.diagnose(&[]), "stress_relaxation");
+}
+
+#[test]
+#[ignore = "named rightly, but \"unknown\" beside it: the floor of rows this uneven comes out 1.6 times too low"]
+fn on_a_wildly_unsteady_clock() {
+    // Two of five rows are missing: the clock of the rows is unsteady, and each stamp is true.
+    let case = fades(Size { rate_hz: 1000.0, ..BENCH });
+    case.rewrite(|row, _| (row * 7 + row * row / 3) % 5 > 1);
+    names(&case.diagnose(&[]), "stress_relaxation");
+}
+
+#[test]
+fn with_a_row_left_out_here_and_there() {
+    let case = fades(BENCH);
+    case.rewrite(|row, _| row * row % 97 != 1);
+    names(&case.diagnose(&[]), "stress_relaxation");
+}

@@ -1,0 +1,269 @@
+//! A diagnosis of every kind.
+
+use crate::signal::{Size, maps, trace};
+use palpate_lab::diagnose::answer::*;
+
+pub const CHECKED: [&str; 8] = [
+    "hunt_crossley_damping",
+    "coulomb_friction",
+    "quadratic_damping",
+    "nonlinear_stiffness",
+    "adhesion",
+    "force_lag",
+    "mains_hum",
+    "stribeck_friction",
+];
+
+const BENCH: Size = Size { depth: 9e-3, force: 4.0, rows: 6000, rate: 1000.0, lacks: [1.0, 0.9, 0.0] };
+
+pub fn explained() -> (Answer, Pictures) {
+    let answer = Answer {
+        summary: "The damping grows with depth and the drive drags; the simulation knows neither.".into(),
+        physics: vec![crossley(), coulomb()],
+        rivals: vec![Rival {
+            physics: vec!["quadratic_damping".into(), "coulomb_friction".into()],
+            held_out_gain: 0.93,
+            separated_by: "press at one speed to 3 mm and to 9 mm: only damping that grows with depth tells them apart"
+                .into(),
+        }],
+        locations: vec![
+            location("force", "trial-1.csv", [2.61, 2.95], Phase::Onset, 0.82, "x 0-2 mm, v > 0.1 m/s"),
+            location("effort", "trial-2.csv", [0.5, 1.75], Phase::Free, 0.41, "|v| < 0.01 m/s"),
+            location("force", "trial-2.csv", [3.0, 3.2], Phase::Unloading, 0.06, ""),
+        ],
+        fit: goodness("force", [0.41, 0.305, 0.0452, 0.044], 0.97),
+        channels: vec![
+            goodness("force", [0.41, 0.305, 0.0452, 0.044], 0.97),
+            goodness("effort", [3.1, 2.2, 0.062, 0.06], 0.995),
+        ],
+        nominal: vec![
+            nominal("stiffness_n_m", "N/m", 300.0, 318.4, 2.3),
+            nominal("damping_n_s_m", "N s/m", 5.0, 5.02, 0.11),
+            nominal("mass_kg", "kg", 0.8, 0.811, 0.004),
+        ],
+        findings: vec![
+            Finding {
+                grave: true,
+                place: "trial-2.csv".into(),
+                text:
+                    "The force sits at its end for 0.4 s: those samples say nothing. Use a sensor that reaches further."
+                        .into(),
+            },
+            Finding { grave: false, place: String::new(), text: "Position is rounded to 0.1 mm.".into() },
+        ],
+        ..bare(Verdict::Explained)
+    };
+    let traces = ["trial-1.csv", "trial-2.csv"].iter().enumerate();
+    let traces =
+        traces.flat_map(|(n, name)| ["force", "effort"].map(|c| trace(&BENCH, name, c, 2 * n as u64))).collect();
+    let mut all = maps(&BENCH, "force", "m", 46.0, 1.1);
+    all.extend(maps(&BENCH, "effort", "m", 1300.0, 1.4));
+    let pictures =
+        Pictures { traces, maps: all, scores: scores(), experiment: Some(experiment(9e-3)), ..blank("bench A") };
+    (answer, pictures)
+}
+
+pub fn no_mismatch() -> (Answer, Pictures) {
+    let size = Size { lacks: [0.0; 3], ..BENCH };
+    let answer = Answer {
+        summary: "The simulation agrees with the recordings as far as the sensors can tell.".into(),
+        fit: goodness("force", [0.0443, 0.0441, 0.0441, 0.044], 0.0),
+        channels: vec![goodness("force", [0.0443, 0.0441, 0.0441, 0.044], 0.0)],
+        nominal: vec![nominal("stiffness_n_m", "N/m", 300.0, 300.4, 2.3)],
+        ..bare(Verdict::NoMismatch)
+    };
+    let pictures = Pictures {
+        traces: vec![trace(&size, "trial-1.csv", "force", 1)],
+        maps: maps(&size, "force", "m", 1.1, 1.1),
+        ..blank("bench A")
+    };
+    (answer, pictures)
+}
+
+pub fn parameters() -> (Answer, Pictures) {
+    let size = Size { lacks: [0.7, 0.0, 0.0], ..BENCH };
+    let answer = Answer {
+        summary: "The contact is stiffer than the rig file says; nothing else is missing.".into(),
+        fit: goodness("force", [0.61, 0.0449, 0.0449, 0.044], 0.0),
+        channels: vec![goodness("force", [0.61, 0.0449, 0.0449, 0.044], 0.0)],
+        nominal: vec![
+            nominal("stiffness_n_m", "N/m", 300.0, 412.0, 2.3),
+            nominal("damping_n_s_m", "N s/m", 5.0, 4.9, 0.3),
+        ],
+        locations: vec![location("force", "trial-1.csv", [0.0, 5.99], Phase::Loading, 0.7, "x 4-9 mm")],
+        ..bare(Verdict::Parameters)
+    };
+    let scores =
+        scores().into_iter().map(|bar| Bar { held_out_gain: 0.01 * bar.held_out_gain, p_value: 0.6, role: "", ..bar });
+    let pictures = Pictures {
+        traces: vec![trace(&size, "trial-1.csv", "force", 1)],
+        scores: scores.collect(),
+        ..blank("bench A")
+    };
+    (answer, pictures)
+}
+
+pub fn unknown() -> (Answer, Pictures) {
+    let size = Size { lacks: [1.0, 0.9, 0.9], ..BENCH };
+    let physics = Physics {
+        name: "unknown".into(),
+        acts_in: "force",
+        statement: "The force differs while the tool draws back, and no known effect does so.".into(),
+        equation: String::new(),
+        evidence: Evidence { held_out_gain: 0.0, p_value: 0.002 },
+        parameters: Vec::new(),
+        on_drive: None,
+    };
+    let answer = Answer {
+        summary: "Something that is not in the list acts while the tool draws back.".into(),
+        physics: vec![physics],
+        locations: vec![location(
+            "force",
+            "trial-1.csv",
+            [3.2, 3.7],
+            Phase::Unloading,
+            0.74,
+            "x 3-9 mm, v < -0.02 m/s",
+        )],
+        fit: goodness("force", [0.41, 0.305, 0.305, 0.044], 0.0),
+        channels: vec![goodness("force", [0.41, 0.305, 0.305, 0.044], 0.0)],
+        ..bare(Verdict::Unknown)
+    };
+    let scores =
+        scores().into_iter().map(|bar| Bar { held_out_gain: 0.1 * bar.held_out_gain, p_value: 0.2, role: "", ..bar });
+    let pictures = Pictures {
+        traces: vec![trace(&size, "trial-1.csv", "force", 1)],
+        maps: maps(&size, "force", "m", 46.0, 46.0),
+        scores: scores.collect(),
+        ..blank("bench A")
+    };
+    (answer, pictures)
+}
+
+/// A microscope's lever that turns: nanonewton metres over microradians.
+pub fn nano() -> (Answer, Pictures) {
+    let size = Size { depth: 4e-6, force: 3e-9, lacks: [1.0, 0.8, 0.1], ..BENCH };
+    let (mut answer, _) = explained();
+    answer.verdict = Verdict::PartlyExplained;
+    answer.physics.truncate(1);
+    answer.physics[0].parameters = vec![
+        value("alpha", 3.21e-7, "N m s/rad^2", 0.04e-7),
+        value("offset", -1.2e-9, "N m", 0.3e-9),
+        value("moved_mass", 2.5e-12, "kg m^2", 0.2e-12),
+    ];
+    answer.rivals.clear();
+    answer.locations.truncate(1);
+    let mut fit = goodness("force", [4.1e-10, 3.1e-10, 0.8e-10, 0.44e-10], 0.91);
+    fit.unit = "N m";
+    answer.channels = vec![fit.clone()];
+    answer.fit = fit;
+    answer.findings.clear();
+    answer.nominal = vec![
+        nominal("stiffness_n_m_rad", "N m/rad", 7e-4, 7.3e-4, 0.05e-4),
+        nominal("inertia_kg_m2", "kg m^2", 2.0e-12, 2.1e-12, 0.3e-12),
+    ];
+    let pictures = Pictures {
+        position_unit: "rad",
+        force_unit: "N m",
+        traces: vec![trace(&size, "trial-1.csv", "force", 4)],
+        maps: maps(&size, "force", "rad", 46.0, 3.0),
+        scores: scores(),
+        ..blank("lever")
+    };
+    (answer, pictures)
+}
+
+fn bare(verdict: Verdict) -> Answer {
+    Answer {
+        schema: "palpate.diagnosis/1",
+        verdict,
+        summary: String::new(),
+        physics: Vec::new(),
+        rivals: Vec::new(),
+        locations: Vec::new(),
+        fit: goodness("force", [1.0; 4], 0.0),
+        channels: Vec::new(),
+        nominal: Vec::new(),
+        checked: CHECKED.to_vec(),
+        findings: Vec::new(),
+    }
+}
+
+fn blank(rig: &str) -> Pictures {
+    Pictures {
+        rig: rig.into(),
+        position_unit: "m",
+        force_unit: "N",
+        traces: Vec::new(),
+        maps: Vec::new(),
+        scores: Vec::new(),
+        experiment: None,
+    }
+}
+
+fn crossley() -> Physics {
+    Physics {
+        name: "hunt_crossley_damping".into(),
+        acts_in: "contact",
+        statement: "The deeper the tool is, the more the contact damps".into(),
+        equation: "F = K x + B v + alpha x v".into(),
+        evidence: Evidence { held_out_gain: 0.94, p_value: 0.0002 },
+        parameters: vec![value("alpha", 812.3, "N s/m^2", 14.0)],
+        on_drive: Some("x v".into()),
+    }
+}
+
+fn coulomb() -> Physics {
+    let lopsided = Value { name: "backward_level".into(), value: 1.12, unit: "N".into(), ci95: [0.81, 1.21] };
+    Physics {
+        name: "coulomb_friction".into(),
+        acts_in: "drive",
+        statement: "The drive drags with the same force at every speed".into(),
+        equation: "as symmetric, with forward_level for v > 0 and backward_level for v < 0".into(),
+        evidence: Evidence { held_out_gain: 0.995, p_value: 0.004 },
+        parameters: vec![value("forward_level", 1.43, "N", 0.05), lopsided],
+        on_drive: None,
+    }
+}
+
+pub fn value(name: &str, value: f64, unit: &str, half_width: f64) -> Value {
+    Value { name: name.into(), value, unit: unit.into(), ci95: [value - half_width, value + half_width] }
+}
+
+fn nominal(name: &str, unit: &str, given: f64, fitted: f64, half_width: f64) -> Nominal {
+    Nominal { name: name.into(), unit: unit.into(), given, fitted, ci95: [fitted - half_width, fitted + half_width] }
+}
+
+fn goodness(channel: &'static str, [as_given, refitted, improved, noise_floor]: [f64; 4], share: f64) -> Goodness {
+    let (unit, held_out, band_hz) = ("N", true, 120.0);
+    Goodness { channel, unit, noise_floor, as_given, refitted, improved, held_out, explained_share: share, band_hz }
+}
+
+fn location(
+    channel: &'static str,
+    trial: &str,
+    [start_s, end_s]: [f64; 2],
+    phase: Phase,
+    share: f64,
+    states: &str,
+) -> Location {
+    Location { channel, trial: trial.into(), start_s, end_s, phase, share, states: states.into() }
+}
+
+fn scores() -> Vec<Bar> {
+    let gains = [0.94, 0.55, 0.91, 0.3, 0.04, 0.02, -0.01, -0.2];
+    let bars = CHECKED.iter().zip(gains).enumerate();
+    bars.map(|(n, (name, held_out_gain))| Bar {
+        name,
+        held_out_gain,
+        p_value: [0.0002, 0.004, 0.0004, 0.03, 0.4, 0.7, 0.9, 0.99][n],
+        role: ["answer", "answer", "rival", "", "", "", "", ""][n],
+    })
+    .collect()
+}
+
+fn experiment(depth: f64) -> Experiment {
+    let time: Vec<f64> = (0..8000).map(|row| f64::from(row) * 1e-3).collect();
+    let reference = time.iter().map(|t| depth * (0.2 + 0.8 * (t / 4.0).floor()) * (3.0 * t).sin()).collect();
+    Experiment { text: "Press to 2 mm and then to 9 mm at the same speed: damping that grows with depth shows only in the second half.".into(), time, reference }
+}
