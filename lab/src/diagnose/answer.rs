@@ -110,7 +110,8 @@ pub struct Location {
     pub end_s: f64,
     /// Phase of contact.
     pub phase: Phase,
-    /// Share of the energy above the floor, over both channels' own totals: of its channel.
+    /// Share of its channel's energy above the floor that lies in this phase of this trial; start and end are the worst
+    /// stretch of it.
     pub share: f64,
     /// "x 6-9 mm, v > 0.05 m/s".
     pub states: String,
