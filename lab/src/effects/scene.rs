@@ -11,8 +11,6 @@ pub struct Scene {
     pub acceleration: f64,
     /// Greatest measured force in size.
     pub force: f64,
-    /// Least and greatest measured force.
-    pub force_range: (f64, f64),
     /// Greatest effort in size; zero where none is recorded.
     pub effort: f64,
     /// Least and greatest position.
@@ -27,8 +25,6 @@ pub struct Scene {
     pub sample: f64,
     /// Fitted stiffness.
     pub stiffness: f64,
-    /// Fitted damping of the contact.
-    pub damping: f64,
     /// Fitted inertia.
     pub inertia: f64,
     /// How often the tool went in: passes inwards of a fifth of the depth or more, over all trials.
