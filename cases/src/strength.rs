@@ -8,7 +8,7 @@ use crate::simulate::{PERIOD, Track};
 pub struct Residual {
     /// Of the force, fitted by K, B and surface.
     pub force: f64,
-    /// Of the effort less the measured force, fitted by m and b.
+    /// Of the effort less the measured force, fitted by m and b, in means over 16 ms.
     pub effort: f64,
 }
 
@@ -61,13 +61,18 @@ impl<const N: usize> Normal<N> {
     }
 }
 
+/// Rows over which the drive's balance is averaged: what shakes quicker no encoder shows.
+const SEEN: usize = 16;
+
 fn drive(tracks: &[Track]) -> f64 {
     let rows = || {
         tracks.iter().flat_map(|track| {
-            (0..track.effort.len().saturating_sub(1)).map(|row| {
-                let a = (track.velocity[row + 1] - track.velocity[row]) / PERIOD;
-                let v = (track.position[row + 1] - track.position[row]) / PERIOD;
-                ([a, v], track.effort[row] - track.force_mean[row])
+            (0..track.effort.len().saturating_sub(SEEN)).step_by(SEEN / 4).map(|row| {
+                let (end, seconds) = (row + SEEN, SEEN as f64 * PERIOD);
+                let mean = |values: &[f64]| values[row..end].iter().sum::<f64>() / SEEN as f64;
+                let a = (track.velocity[end] - track.velocity[row]) / seconds;
+                let v = (track.position[end] - track.position[row]) / seconds;
+                ([a, v], mean(&track.effort) - mean(&track.force_mean))
             })
         })
     };

@@ -44,7 +44,7 @@ fn every_effect_of_the_contact_reaches_its_strength() {
 
 #[test]
 fn every_effect_of_the_drive_reaches_its_strength() {
-    all_reach(2.0, |known| known.acts == Acts::Drive);
+    all_reach(8.0, |known| known.acts == Acts::Drive);
 }
 
 #[test]

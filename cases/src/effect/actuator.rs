@@ -81,7 +81,8 @@ impl Shape for EffortLag {
     }
 
     fn sizes(&self) -> Sizes {
-        Sizes::new(0.001, 0.03)
+        // Half a sample is what the hold of the effort leaves open; beyond that a whole one.
+        Sizes { smallest: 1.5e-3, first: 2e-3, largest: 0.03 }
     }
 
     fn put(&self, size: f64, physics: &mut Physics) {

@@ -43,7 +43,8 @@ impl Shape for ChannelDelay {
     }
 
     fn sizes(&self) -> Sizes {
-        Sizes { smallest: 1e-6, first: 5e-4, largest: 0.01 }
+        // A quarter of a sample is what the clock leaves open.
+        Sizes { smallest: 2.5e-4, first: 5e-4, largest: 0.01 }
     }
 
     fn put(&self, size: f64, physics: &mut Physics) {
@@ -65,7 +66,7 @@ impl Shape for ForceLag {
     }
 
     fn sizes(&self) -> Sizes {
-        Sizes::new(5e-4, 0.03)
+        Sizes { smallest: 2.5e-4, first: 5e-4, largest: 0.03 }
     }
 
     fn put(&self, size: f64, physics: &mut Physics) {
