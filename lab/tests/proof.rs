@@ -10,8 +10,8 @@
 //!
 //! It writes `target/proof.md` and a line a case into `target/proof.jsonl`, as it goes. How many cases it draws is set
 //! by `PALPATE_PROOF_NONE` (300), `PALPATE_PROOF_EACH` (20, of each effect), `PALPATE_PROOF_OUTSIDE` (40),
-//! `PALPATE_PROOF_PAIRS` (20) and `PALPATE_PROOF_SEED` (1). Strengths are log-uniform from 0.1 to 10: the RMS that the
-//! nominal physics cannot take up, over the floor of the sensor.
+//! `PALPATE_PROOF_PAIRS` (20) and `PALPATE_PROOF_SEED` (1). Strengths are log-uniform from 0.1 to 10, or of single effects
+//! all `PALPATE_PROOF_STRENGTH`: the RMS that the nominal physics cannot take up, over the floor of the sensor.
 
 #[path = "proof/case.rs"]
 mod case;

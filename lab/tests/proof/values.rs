@@ -7,8 +7,9 @@ use palpate_lab::diagnose::answer::Physics;
 use crate::row::Compared;
 
 /// Effect, parameter in the truth, parameter in the answer: the same law and the same unit.
-const SAME: [[&str; 3]; 30] = [
+const SAME: [[&str; 3]; 31] = [
     ["nonlinear_stiffness", "exponent", "exponent"],
+    ["nonlinear_stiffness", "stiffening", "stiffening"],
     ["nonlinear_stiffness", "hardening", "cubic"],
     ["layered_stiffness", "layer_depth", "layer_depth"],
     ["hunt_crossley_damping", "alpha", "alpha"],

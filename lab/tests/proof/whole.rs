@@ -35,7 +35,7 @@ pub fn run() -> Vec<Row> {
 fn plan() -> Vec<Wish> {
     let each = number("PALPATE_PROOF_EACH", 20);
     let mut groups = vec![(number("PALPATE_PROOF_NONE", 300), What::Nothing)];
-    let single = |name: &str| What::Single { name: Some(name.to_owned()), strength: None };
+    let single = |name: &str| What::Single { name: Some(name.to_owned()), strength: fixed("PALPATE_PROOF_STRENGTH") };
     groups.extend(ALL.iter().filter(|known| known.listed).map(|known| (each, single(known.name))));
     groups.push((number("PALPATE_PROOF_OUTSIDE", 40), What::Outside { name: None, strength: None }));
     groups.push((number("PALPATE_PROOF_PAIRS", 20), What::Pair { names: None, strength: None }));
@@ -49,6 +49,12 @@ fn plan() -> Vec<Wish> {
 fn number(variable: &str, otherwise: u64) -> u64 {
     let Ok(text) = std::env::var(variable) else { return otherwise };
     text.parse().unwrap_or_else(|_| panic!("{variable} is {text}; expected a whole number"))
+}
+
+/// A strength for all single effects instead of one drawn for each.
+fn fixed(variable: &str) -> Option<f64> {
+    let text = std::env::var(variable).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{variable} is {text}; expected a number")))
 }
 
 /// Where cargo builds.
