@@ -17,7 +17,7 @@ mod scene;
 mod sensor;
 mod touch;
 
-pub use card::{Card, Form, Parameter, Place, Stage, key_of, slug};
+pub use card::{Card, Form, Limit, Parameter, Place, Stage, key_of, slug};
 pub use contact_law::{Active, Along};
 pub use push::Push;
 pub use reading::Reading;
@@ -43,6 +43,12 @@ pub trait Effect: Sync {
 
     /// Acts on the contact. `values` are in the order of the form's parameters.
     fn touch(&self, _form: usize, _values: &[f64], _memory: &mut Memory, _touch: &mut Touch) {}
+
+    /// The greatest effort that it lets pass, for effects of the drive that cut the command's peaks: along a recording they
+    /// are cut row by row, before any filter.
+    fn effort_limit(&self, _form: usize, _values: &[f64]) -> Option<f64> {
+        None
+    }
 
     /// Acts on the drive.
     fn push(&self, _form: usize, _values: &[f64], _memory: &mut Memory, _push: &mut Push) {}

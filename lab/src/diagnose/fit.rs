@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::model::{Channels, Model, Rest, index};
+use super::model::{Channels, Model, Rest, Term, index};
 use super::track::Trial;
 use super::whiten::Whitener;
-use crate::effects::Scene;
+use crate::effects::{Limit, Parameter, Place, Scene};
 
 /// What is fitted to: trials, what their residuals are worth, and the rows that count.
 #[derive(Clone, Copy)]
@@ -97,18 +97,26 @@ pub fn axes(model: &Model, values: &[f64], scene: &Scene) -> Vec<Axis> {
         for (offset, parameter) in term.all_parameters(model.trials()).iter().enumerate() {
             let value = values[start + offset];
             let scale = if value == 0.0 { 1e-3 } else { value.abs() };
-            let low = if parameter.slow { parameter.low.max(2.0 * scene.step) } else { parameter.low };
-            let size =
-                if term.effect.card().place == crate::effects::Place::Drive { scene.effort } else { scene.force };
-            let low = if parameter.range_end { 0.15 * size } else { low };
-            let low = if parameter.repeats { low.max(1.8 / scene.duration) } else { low };
-            let way = scene.travel.1 - scene.travel.0;
-            let high = if parameter.comes_round { parameter.high.min(way / 1.4) } else { parameter.high };
-            let low = if parameter.carries { low.max(scene.inertia * scene.link_rate().powi(2)) } else { low };
+            let (low, high) = reach_of(parameter, term, scene);
             axes.push(axis(low, high, scale, !parameter.fixed));
         }
     }
     axes
+}
+
+/// Least and greatest value that a recording can show.
+fn reach_of(parameter: &Parameter, term: &Term, scene: &Scene) -> (f64, f64) {
+    let (low, high) = (parameter.low, parameter.high);
+    match parameter.limit {
+        Limit::Card => (low, high),
+        Limit::Step => (low.max(2.0 * scene.step), high),
+        Limit::Range if term.effect.card().place == Place::Drive => (0.15 * scene.effort, high),
+        Limit::Range => (0.15 * scene.force, high),
+        Limit::Turns => (low.max(1.8 / scene.duration), high),
+        Limit::Swing => (low.max(scene.inertia * scene.link_rate().powi(2)), high),
+        Limit::Way => (low, high.min((scene.travel.1 - scene.travel.0) / 1.4)),
+        Limit::Pace => (low.max(scene.slowest()), high),
+    }
 }
 
 /// Share of its scale by which a value is moved to see what it does.
@@ -154,7 +162,7 @@ pub fn reach(model: &Model, at: usize) -> Channels {
     }
     let owner = (0..model.terms.len()).rev().find(|&term| at >= model.start_of(term));
     match owner.map(|owner| model.terms[owner].effect.card().place) {
-        Some(crate::effects::Place::Contact) => reach(model, index::STIFFNESS),
+        Some(Place::Contact) => reach(model, index::STIFFNESS),
         Some(place) => model.reach(place),
         None => Channels::BOTH,
     }
@@ -169,12 +177,24 @@ const MOST_DAMPING: f64 = 1e6;
 /// The values that leave the least, searched from `start`.
 #[must_use]
 pub fn fit(data: &Data<'_>, model: &Model, start: &[f64], scene: &Scene) -> Fit {
+    search(data, model, start, scene, 0.0)
+}
+
+/// The same of a part of the data: what the part does not tell stays at `start`. A value of an effect that moved by all of
+/// its scale counts as one of energy.
+#[must_use]
+pub fn fit_part(data: &Data<'_>, model: &Model, start: &[f64], scene: &Scene) -> Fit {
+    search(data, model, start, scene, 1.0)
+}
+
+fn search(data: &Data<'_>, model: &Model, start: &[f64], scene: &Scene, hold: f64) -> Fit {
     let mut values = start.to_vec();
     let mut axes = axes(model, &values, scene);
     clamp(&mut values, &axes);
     let base = data.residual(model, &values, Channels::BOTH);
     let left = energy(&base);
-    let mut search = Search { data, model, values, base, energy: left, damping: 1e-3 };
+    let anchor = Anchor::of(model, &values, &axes, hold);
+    let mut search = Search { data, model, values, base, energy: left, damping: 1e-3, anchor };
     for _ in 0..MOST_STEPS {
         for (axis, fresh) in axes.iter_mut().zip(self::axes(model, &search.values, scene)) {
             // A scale that follows its value to nothing would end the search there.
@@ -185,7 +205,36 @@ pub fn fit(data: &Data<'_>, model: &Model, start: &[f64], scene: &Scene) -> Fit 
             break;
         }
     }
-    Fit { values: search.values, energy: search.energy }
+    Fit { energy: search.energy - search.anchor.energy(&search.values), values: search.values }
+}
+
+/// Where values are held, and how firmly.
+pub struct Anchor {
+    /// One a value.
+    pub place: Vec<f64>,
+    /// Energy of a unit away from there.
+    pub weight: Vec<f64>,
+}
+
+/// Energy that a clock's fraction of a sample costs at its bound: it is not to move for nothing, for a damper does nearly
+/// the same.
+const CLOCK: f64 = 9.0;
+
+impl Anchor {
+    /// Clocks at zero; values of effects at `values`, where `hold` is the energy of one that moved by its scale.
+    pub fn of(model: &Model, values: &[f64], axes: &[Axis], hold: f64) -> Self {
+        let held = |at: usize| match at {
+            index::FORCE_TIMING | index::EFFORT_TIMING => (0.0, CLOCK / axes[at].high.powi(2)),
+            _ if at < model.nominals() => (values[at], 0.0),
+            _ => (values[at], hold / axes[at].scale.powi(2)),
+        };
+        let (place, weight) = (0..values.len()).map(held).unzip();
+        Self { place, weight }
+    }
+
+    fn energy(&self, values: &[f64]) -> f64 {
+        values.iter().zip(&self.place).zip(&self.weight).map(|((v, p), w)| w * (v - p).powi(2)).sum()
+    }
 }
 
 /// The state of one search.
@@ -196,13 +245,18 @@ struct Search<'a> {
     base: Vec<f64>,
     energy: f64,
     damping: f64,
+    anchor: Anchor,
 }
 
 impl Search<'_> {
     /// Goes one step to values that leave less; false where there are none.
     fn step(&mut self, axes: &[Axis]) -> bool {
         let columns = jacobian(self.data, self.model, &self.values, axes, &self.base);
-        let slope: Vec<f64> = columns.iter().map(|(_, column)| dot(column, &self.base)).collect();
+        let Anchor { place, weight } = &self.anchor;
+        let slope: Vec<f64> = columns
+            .iter()
+            .map(|(at, column)| dot(column, &self.base) + weight[*at] * (self.values[*at] - place[*at]))
+            .collect();
         // A value at its bound that would leave it stays.
         let moving: Vec<usize> = (0..columns.len())
             .filter(|&i| {
@@ -218,6 +272,7 @@ impl Search<'_> {
                 let value = dot(&columns[moving[i]].1, &columns[moving[j]].1) * scale(i) * scale(j);
                 (normal[(i, j)], normal[(j, i)]) = (value, value);
             }
+            normal[(i, i)] += weight[columns[moving[i]].0] * scale(i) * scale(i);
         }
         let right = DVector::from_fn(n, |i, _| -slope[moving[i]] * scale(i));
         let greatest = (0..n).map(|i| normal[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
@@ -242,7 +297,7 @@ impl Search<'_> {
     /// Moves to `next` if it leaves less.
     fn take(&mut self, next: Vec<f64>) -> bool {
         let rest = self.data.residual(self.model, &next, Channels::BOTH);
-        let fresh = energy(&rest);
+        let fresh = energy(&rest) + self.anchor.energy(&next);
         let better = fresh < self.energy;
         if better {
             (self.values, self.base, self.energy) = (next, rest, fresh);

@@ -77,6 +77,7 @@ pub fn scene(trials: &[Trial], model: &Model, values: &[f64], sample: f64, is_ro
         duration: tracks().map(|track| track.len() as f64 * track.step).fold(0.0, f64::max),
         step: tracks().next().map_or(1.0, |track| track.step),
         drive_step: trials.first().map_or(1.0, |trial| trial.drive.step),
+        pace: trials.iter().map(|trial| trial.drive.behind().pace).fold(0.0, f64::max),
         sample,
         stiffness: values[index::STIFFNESS],
         inertia: values[index::INERTIA],

@@ -67,68 +67,42 @@ pub struct Parameter {
     pub high: f64,
     /// A convention that is chosen and not fitted, a depth at which something is stated, say.
     pub fixed: bool,
-    /// Whether it only shows where it is longer than the step of the analysis.
-    pub slow: bool,
     /// Whether each trial has a value of its own, as a phase has: nobody starts a recording in step with the mains.
     pub each_trial: bool,
-    /// Whether it is the end of a channel's range, which the channel has to have reached.
-    pub range_end: bool,
-    /// Whether it is a frequency that has to come round twice within a trial, or it is a drift.
-    pub repeats: bool,
-    /// Whether it is a stiffness that carries the tool: it swings faster than the tool moves, or it carries nothing.
-    pub carries: bool,
-    /// Whether it is a pitch that has to come round within the way, or it is a slope.
-    pub comes_round: bool,
+    /// What the recording has to show of it.
+    pub limit: Limit,
+}
+
+/// What a recording has to show of a parameter, beyond the bounds of its card.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// Nothing more.
+    Card,
+    /// A time that is longer than the step of the analysis: below it there is nothing to tell it from.
+    Step,
+    /// The end of a channel's range, which the channel has to have reached.
+    Range,
+    /// A frequency that comes round twice within a trial, or it is a drift.
+    Turns,
+    /// A stiffness that carries the tool: it swings faster than the tool moves, or it carries nothing.
+    Swing,
+    /// A pitch that comes round within the way, or it is a slope.
+    Way,
+    /// A speed at which the encoder steps within the filter, or it is the encoder's.
+    Pace,
 }
 
 impl Parameter {
     /// A parameter that is fitted.
     #[must_use]
     pub const fn new(name: &'static str, unit: Word, meaning: &'static str, low: f64, high: f64) -> Self {
-        Self {
-            name,
-            unit,
-            meaning,
-            low,
-            high,
-            fixed: false,
-            slow: false,
-            each_trial: false,
-            range_end: false,
-            repeats: false,
-            carries: false,
-            comes_round: false,
-        }
+        Self { name, unit, meaning, low, high, fixed: false, each_trial: false, limit: Limit::Card }
     }
 
-    /// A time that the analysis has to resolve: below its step there is nothing to tell it from.
+    /// The same within what a recording can show of it.
     #[must_use]
-    pub const fn slow(self) -> Self {
-        Self { slow: true, ..self }
-    }
-
-    /// A pitch that comes round within the way.
-    #[must_use]
-    pub const fn comes_round(self) -> Self {
-        Self { comes_round: true, ..self }
-    }
-
-    /// A stiffness that carries the tool.
-    #[must_use]
-    pub const fn carries(self) -> Self {
-        Self { carries: true, ..self }
-    }
-
-    /// A frequency that comes round at least twice.
-    #[must_use]
-    pub const fn repeats(self) -> Self {
-        Self { repeats: true, ..self }
-    }
-
-    /// The end of a range.
-    #[must_use]
-    pub const fn range_end(self) -> Self {
-        Self { range_end: true, ..self }
+    pub const fn within(self, limit: Limit) -> Self {
+        Self { limit, ..self }
     }
 
     /// A value that each trial has for itself.
@@ -147,12 +121,8 @@ impl Parameter {
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
             fixed: true,
-            slow: false,
             each_trial: false,
-            range_end: false,
-            repeats: false,
-            carries: false,
-            comes_round: false,
+            limit: Limit::Card,
         }
     }
 }

@@ -21,6 +21,8 @@ pub struct Scene {
     pub step: f64,
     /// The same for the drive's balance, s.
     pub drive_step: f64,
+    /// Speed at which the encoder steps once within the filter through which laws see the drive.
+    pub pace: f64,
     /// Seconds of one raw sample.
     pub sample: f64,
     /// Fitted stiffness.
@@ -53,6 +55,12 @@ impl Scene {
     #[must_use]
     pub fn link_rate(&self) -> f64 {
         2.0 * std::f64::consts::TAU * 0.2 / self.drive_step
+    }
+
+    /// The slowest speed at which an encoder still tells how fast: a quarter of a step within the filter.
+    #[must_use]
+    pub fn slowest(&self) -> f64 {
+        0.25 * self.pace
     }
 
     /// Whether early and late can be told from shallow and deep: only where the same depth was visited again.

@@ -17,6 +17,7 @@ pub fn scene() -> Scene {
         duration: 4.0,
         step: 5e-3,
         drive_step: 1e-2,
+        pace: 1e-3,
         sample: 1e-3,
         stiffness: 300.0,
         inertia: 0.8,

@@ -35,10 +35,25 @@ static CARD: Card = Card {
                 Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
             ],
         },
+        Form {
+            name: "cohesive",
+            equation: "as neck, the pull falling from pull_off_force in a straight line that would end after softening_length, until release_height",
+            parameters: &[
+                Parameter::new("pull_off_force", Word::new("N", "N m"), "greatest pull", 0.0, f64::INFINITY),
+                Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
+                Parameter::new(
+                    "softening_length",
+                    Word::new("m", "rad"),
+                    "way over which the pull would fall to nothing",
+                    0.0,
+                    f64::INFINITY,
+                ),
+            ],
+        },
     ],
     excited_by: "leaving the surface, slowly and often",
     resembles: &["force_bias", "lost_motion"],
-    source: "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
+    source: "D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
 };
 
 impl Effect for Adhesion {
@@ -46,18 +61,19 @@ impl Effect for Adhesion {
         &CARD
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         if scene.releases == 0 {
             return Vec::new();
         }
         let force = 0.05 * scene.force;
         let height = force / scene.stiffness.max(f64::MIN_POSITIVE);
         let away = (scene.travel.1 - scene.travel.0 - scene.depth).max(0.3 * scene.depth);
-        [0.3, 1.0, 3.0, 10.0]
-            .iter()
-            .map(|factor| Start::sized(&[force, (factor * height).min(away)], &[0]))
-            .chain([0.05, 0.2, 0.5].iter().map(|part| Start::sized(&[force, part * away], &[0])))
-            .collect()
+        let near = [0.3, 1.0, 3.0, 10.0].iter().map(|factor| (factor * height).min(away));
+        let heights = near.chain([0.05, 0.2, 0.5].iter().map(|part| part * away));
+        if form == 2 {
+            return heights.map(|height| Start::sized(&[force, height, 1.5 * height], &[0])).collect();
+        }
+        heights.map(|height| Start::sized(&[force, height], &[0])).collect()
     }
 
     fn touch(&self, form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
@@ -73,10 +89,14 @@ impl Effect for Adhesion {
         if memory[0] == 0.0 {
             return;
         }
-        let pull = values[0];
         if form == 1 {
-            touch.force -= pull;
+            touch.force -= values[0];
             return;
+        }
+        let mut pull = values[0];
+        if form == 2 {
+            let beyond = (-touch.position - pull / touch.stiffness.max(f64::MIN_POSITIVE)).max(0.0);
+            pull *= (1.0 - beyond / values[2].max(f64::MIN_POSITIVE)).max(0.0);
         }
         let stretched = touch.stiffness * touch.position + touch.damping * touch.velocity + touch.extra;
         if touch.velocity < 0.0 || touch.position < 0.0 {

@@ -6,29 +6,50 @@ use crate::rig::Word;
 /// See [`CARD`].
 pub struct Hysteresis;
 
+const LOOP_FORCE: Parameter =
+    Parameter::new("loop_force", Word::new("N", "N m"), "half the width of the loop", 0.0, f64::INFINITY);
+const YIELD_DEPTH: Parameter = Parameter::new(
+    "yield_depth",
+    Word::new("m", "rad"),
+    "travel over which the force turns after a reversal",
+    0.0,
+    f64::INFINITY,
+);
+
 static CARD: Card = Card {
     name: "hysteresis",
     place: Place::Contact,
     stage: Stage::Law,
     most: 1,
     statement: "The force going in is larger than coming out, however slowly the tool moves",
-    forms: &[Form {
-        name: "elastic_slip",
-        equation: "F = K x + B v + loop_force z, dz = dx / yield_depth within -1 <= z <= 1",
-        parameters: &[
-            Parameter::new("loop_force", Word::new("N", "N m"), "half the width of the loop", 0.0, f64::INFINITY),
-            Parameter::new(
-                "yield_depth",
-                Word::new("m", "rad"),
-                "travel over which the force turns after a reversal",
-                0.0,
-                f64::INFINITY,
-            ),
-        ],
-    }],
+    forms: &[
+        Form {
+            name: "elastic_slip",
+            equation: "F = K x + B v + loop_force z, dz = dx / yield_depth within -1 <= z <= 1",
+            parameters: &[LOOP_FORCE, YIELD_DEPTH],
+        },
+        Form {
+            name: "bouc_wen",
+            equation: "F = K x + B v + loop_force z, dz = (1 - |z|^sharpness (1 + sign(z dx)) / 2) dx / yield_depth",
+            parameters: &[
+                LOOP_FORCE,
+                YIELD_DEPTH,
+                Parameter::new("sharpness", Word::same("1"), "how suddenly it yields", 0.3, 6.0),
+            ],
+        },
+        Form {
+            name: "bundle",
+            equation: "F = K x + B v + loop_force mean(z), five elastic slips of yields from yield_depth / spread to yield_depth spread",
+            parameters: &[
+                LOOP_FORCE,
+                YIELD_DEPTH,
+                Parameter::new("spread", Word::same("1"), "of the yields, in equal ratios", 1.0, 30.0),
+            ],
+        },
+    ],
     excited_by: "reversals at two or more speeds in contact, slow ones above all",
     resembles: &["plastic_set", "lost_motion", "quadratic_damping", "stress_relaxation"],
-    source: "L. Prandtl (1928), W. D. Iwan, J. Appl. Mech. 33 (1966) 893: an elastic slip element",
+    source: "L. Prandtl (1928), W. D. Iwan, J. Appl. Mech. 33 (1966) 893: elastic slip, alone and in a bundle; R. Bouc (1967), Y.-K. Wen, J. Eng. Mech. Div. 102 (1976) 249",
 };
 
 impl Effect for Hysteresis {
@@ -36,20 +57,67 @@ impl Effect for Hysteresis {
         &CARD
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         let size = 0.05 * scene.stiffness * scene.depth;
         let travels = geometric(0.01 * scene.depth, 1.0 * scene.depth, 7);
-        travels.iter().map(|travel| Start::sized(&[size, *travel], &[0])).collect()
+        let third = [None, Some(1.0), Some(3.0)][form];
+        let start = |travel: &f64| {
+            let values: Vec<f64> = [size, *travel].into_iter().chain(third).collect();
+            Start::sized(&values, &[0])
+        };
+        travels.iter().map(start).collect()
     }
 
-    fn touch(&self, _form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
-        // memory: depth an instant ago, z.
+    fn touch(&self, form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
+        // memory: depth an instant ago, z of each spring.
         let moved = touch.depth - memory[0];
         memory[0] = touch.depth;
         let travel = values[1].max(f64::MIN_POSITIVE);
         // What was strained is at rest again when the tool comes back.
-        memory[1] =
-            if touch.inside > 0.0 && touch.step > 0.0 { (memory[1] + moved / travel).clamp(-1.0, 1.0) } else { 0.0 };
-        touch.extra += values[0] * memory[1] * touch.inside;
+        if touch.inside <= 0.0 || touch.step <= 0.0 {
+            memory[1..].fill(0.0);
+            return;
+        }
+        let strain = match form {
+            0 => {
+                memory[1] = (memory[1] + moved / travel).clamp(-1.0, 1.0);
+                memory[1]
+            }
+            1 => {
+                memory[1] = bouc_wen(memory[1], moved / travel, values[2]);
+                memory[1]
+            }
+            _ => {
+                let middle = 0.5 * (SPRINGS - 1) as f64;
+                for (at, spring) in memory[1..=SPRINGS].iter_mut().enumerate() {
+                    let reach = travel * values[2].powf((at as f64 - middle) / middle);
+                    *spring = (*spring + moved / reach).clamp(-1.0, 1.0);
+                }
+                memory[1..=SPRINGS].iter().sum::<f64>() / SPRINGS as f64
+            }
+        };
+        touch.extra += values[0] * strain * touch.inside;
     }
 }
+
+/// Springs of a bundle.
+const SPRINGS: usize = 5;
+
+/// Strain after a way of `moved` yield depths.
+fn bouc_wen(mut strain: f64, moved: f64, sharpness: f64) -> f64 {
+    if moved.abs() > MOST_YIELDS {
+        return moved.signum();
+    }
+    let steps = (moved.abs() / STEP).ceil().max(1.0);
+    for _ in 0..steps as usize {
+        let into = if moved * strain > 0.0 { strain.abs().powf(sharpness) } else { 0.0 };
+        strain = (strain + moved / steps * (1.0 - into)).clamp(-1.0, 1.0);
+    }
+    strain
+}
+
+/// Yield depths beyond which nothing of the state before is left.
+const MOST_YIELDS: f64 = 12.0;
+
+/// Yield depths of one step of the integration.
+const STEP: f64 = 0.2;

@@ -40,10 +40,21 @@ static CARD: Card = Card {
                 f64::INFINITY,
             )],
         },
+        Form {
+            name: "exponential",
+            equation: "spring = K (exp(stiffening x) - 1) / stiffening",
+            parameters: &[Parameter::new(
+                "stiffening",
+                Word::new("1/m", "1/rad"),
+                "growth of the tangent stiffness with depth, as a share of it",
+                0.0,
+                f64::INFINITY,
+            )],
+        },
     ],
     excited_by: "contacts that reach two or more depths",
     resembles: &["layered_stiffness", "plastic_set"],
-    source: "H. Hertz (1881); I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47; Duffing's cubic spring",
+    source: "H. Hertz (1881); I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47; Duffing's cubic spring; soft tissue: Y. C. Fung, Am. J. Physiol. 213 (1967) 1532",
 };
 
 impl Effect for NonlinearStiffness {
@@ -56,6 +67,10 @@ impl Effect for NonlinearStiffness {
             let exponents = [0.6, 0.8, 1.2, 1.5, 2.0, 2.8, 4.0];
             return exponents.iter().map(|exponent| Start::at(&[*exponent, scene.depth])).collect();
         }
+        if form == 2 {
+            let growths = [0.3, 1.0, 2.5].map(|growth| growth / scene.depth.max(f64::MIN_POSITIVE));
+            return growths.iter().map(|growth| Start::at(&[*growth])).collect();
+        }
         vec![Start::sized(&[0.1 * scene.stiffness / scene.depth.powi(2)], &[0])]
     }
 
@@ -66,8 +81,14 @@ impl Effect for NonlinearStiffness {
             if reference > 0.0 && depth > 0.0 {
                 touch.spring = touch.stiffness * touch.depth * (depth / reference).powf(exponent - 1.0);
             }
-        } else {
+        } else if form == 1 {
             touch.spring += values[0] * touch.depth * depth * depth;
+        } else if values[0] > 0.0 {
+            let growth = (values[0] * depth).min(MOST_GROWTH);
+            touch.spring = (touch.stiffness * growth.exp_m1() / values[0]).copysign(touch.depth);
         }
     }
 }
+
+/// Exponent beyond which no force is left to tell: a search may try anything.
+const MOST_GROWTH: f64 = 60.0;

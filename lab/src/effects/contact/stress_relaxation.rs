@@ -1,6 +1,6 @@
 //! A force that fades while the tool is held.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch, geometric};
+use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Scene, Stage, Start, Touch, geometric};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -20,7 +20,8 @@ static CARD: Card = Card {
         equation: "F = K x + B v + z, dz/dt = branch_stiffness v - z / relaxation_time",
         parameters: &[
             Parameter::new("branch_stiffness", STIFFNESS, "stiffness that fades", 0.0, f64::INFINITY),
-            Parameter::new("relaxation_time", SECOND, "time in which it fades to 37 %", 0.0, f64::INFINITY).slow(),
+            Parameter::new("relaxation_time", SECOND, "time in which it fades to 37 %", 0.0, f64::INFINITY)
+                .within(Limit::Step),
         ],
     }],
     excited_by: "holds after a quick approach; two or more frequencies",

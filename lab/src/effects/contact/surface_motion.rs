@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight,
+    Abscissa, Card, Effect, Form, Limit, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight,
 };
 use crate::rig::Word;
 
@@ -25,7 +25,7 @@ static CARD: Card = Card {
             parameters: &[
                 Parameter::new("sine", METRE, "part of the motion", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
                 Parameter::new("cosine", METRE, "part of the motion", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
-                Parameter::new("frequency", Word::same("Hz"), "of the motion", 0.0, f64::INFINITY).repeats(),
+                Parameter::new("frequency", Word::same("Hz"), "of the motion", 0.0, f64::INFINITY).within(Limit::Turns),
             ],
         },
         Form {

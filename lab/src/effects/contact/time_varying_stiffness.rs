@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight, gate, geometric,
-    linear,
+    Abscissa, Card, Effect, Form, Limit, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight, gate,
+    geometric, linear,
 };
 use crate::rig::Word;
 
@@ -48,7 +48,7 @@ static CARD: Card = Card {
             parameters: &[
                 Parameter::new("sine", Word::same("1"), "part of the change", -0.98, 0.98).each_trial(),
                 Parameter::new("cosine", Word::same("1"), "part of the change", -0.98, 0.98).each_trial(),
-                Parameter::new("frequency", Word::same("Hz"), "of the change", 0.0, f64::INFINITY).repeats(),
+                Parameter::new("frequency", Word::same("Hz"), "of the change", 0.0, f64::INFINITY).within(Limit::Turns),
             ],
         },
     ],

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, Tones, Weight,
+    Abscissa, Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, Tones, Weight,
 };
 use crate::rig::Word;
 
@@ -25,7 +25,7 @@ static CARD: Card = Card {
             Parameter::new("sine", NEWTON, "part of the ripple", f64::NEG_INFINITY, f64::INFINITY),
             Parameter::new("cosine", NEWTON, "part of the ripple", f64::NEG_INFINITY, f64::INFINITY),
             Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY)
-                .comes_round(),
+                .within(Limit::Way),
         ],
     }],
     excited_by: "slow motion over many pitches",

@@ -1,6 +1,6 @@
 //! A drive that cannot give what is asked.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, linear};
+use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, linear};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -15,7 +15,9 @@ static CARD: Card = Card {
     forms: &[Form {
         name: "symmetric",
         equation: "effort at the tool = commanded effort within -limit to limit",
-        parameters: &[Parameter::new("limit", Word::new("N", "N m"), "greatest effort", 0.0, f64::INFINITY).range_end()],
+        parameters: &[
+            Parameter::new("limit", Word::new("N", "N m"), "greatest effort", 0.0, f64::INFINITY).within(Limit::Range)
+        ],
     }],
     excited_by: "efforts near the greatest that is commanded",
     resembles: &["effort_lag", "coulomb_friction"],
@@ -29,6 +31,10 @@ impl Effect for EffortSaturation {
 
     fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
         linear(0.2, 0.95, 12).iter().map(|part| Start::at(&[part * scene.effort])).collect()
+    }
+
+    fn effort_limit(&self, _form: usize, values: &[f64]) -> Option<f64> {
+        Some(values[0].abs())
     }
 
     fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {

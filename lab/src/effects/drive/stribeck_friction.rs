@@ -1,6 +1,6 @@
 //! Friction that is larger when creeping.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -26,7 +26,8 @@ static CARD: Card = Card {
                 "speed at which the excess is gone",
                 0.0,
                 f64::INFINITY,
-            ),
+            )
+            .within(Limit::Pace),
         ],
     }],
     excited_by: "slow reversals, beside quick ones",
@@ -41,7 +42,8 @@ impl Effect for StribeckFriction {
 
     fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
         let level = 0.03 * scene.effort;
-        let speeds = geometric(0.03 * scene.speed, 1.5 * scene.speed, 6);
+        let slowest = (0.03 * scene.speed).max(scene.slowest());
+        let speeds = geometric(slowest, (1.5 * scene.speed).max(slowest), 6);
         speeds.iter().map(|speed| Start::sized(&[level, level, *speed], &[0, 1])).collect()
     }
 

@@ -1,7 +1,7 @@
 //! A cable, belt or gear that gives.
 
 use crate::effects::drive::backlash::Link;
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -24,7 +24,7 @@ static CARD: Card = Card {
                 0.0,
                 f64::INFINITY,
             )
-            .carries(),
+            .within(Limit::Swing),
             Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8),
             Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.005, 0.3),
         ],

@@ -1,6 +1,6 @@
 //! A sensor at the end of its range.
 
-use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start, linear};
+use crate::effects::{Card, Effect, Form, Limit, Parameter, Place, Reading, Scene, Stage, Start, linear};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -16,7 +16,7 @@ static CARD: Card = Card {
         name: "symmetric",
         equation: "reading = F within -limit to limit",
         parameters: &[
-            Parameter::new("limit", Word::new("N", "N m"), "greatest reading", 0.0, f64::INFINITY).range_end()
+            Parameter::new("limit", Word::new("N", "N m"), "greatest reading", 0.0, f64::INFINITY).within(Limit::Range)
         ],
     }],
     excited_by: "deep contacts beside shallow ones",
