@@ -102,7 +102,7 @@ pub fn compose(parts: Parts<'_>) -> Option<(Answer, Pictures)> {
 /// What the recordings showed before, and what limits the answer.
 fn findings(parts: &Parts<'_>, stand: &Stand) -> Vec<Finding> {
     let mut findings = parts.findings.clone();
-    let doubt = parts.study.doubt(&stand.values);
+    let [doubt, _] = parts.study.doubts(&stand.values);
     if doubt > 2.0 {
         let text = format!(
             "One step of the position sensor is worth more force in this contact than the force sensor's noise: a residual \

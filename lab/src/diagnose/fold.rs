@@ -17,6 +17,8 @@ const STRETCHES: f64 = 10.0;
 pub struct HeldOut {
     /// Whitened energy over all rows.
     pub energy: f64,
+    /// Mean square of the residual over its floor, its memory left in, of force and effort.
+    pub powers: [f64; 2],
     /// Residuals of every trial, each row by the values of the other half.
     pub rests: Vec<Rest>,
     /// The values that each half taught; none where nothing was fitted.
@@ -46,7 +48,7 @@ pub fn held_out(study: &Study, whitener: &Whitener, model: &Model, start: &[f64]
         .map(|taught| {
             let rows: Vec<bool> = halves.iter().map(|half| half == taught).collect();
             let data = Data { trials, whitener, rows: Some(&rows) };
-            fit::fit(&data, model, start, scene).values
+            fit::fit_part(&data, model, start, scene).values
         })
         .collect();
     frozen(study, whitener, model, &values, &halves)
@@ -59,8 +61,12 @@ fn frozen(study: &Study, whitener: &Whitener, model: &Model, values: &[Vec<f64>]
         .iter()
         .map(|values| trials.iter().map(|trial| model.rest(values, trial, Channels::BOTH)).collect())
         .collect();
-    let whites = [whitener.white(&by[0]), whitener.white(&by[1])];
-    let energy = halves.iter().enumerate().map(|(row, half)| whites[1 - half][row].powi(2)).sum();
+    let judged = |whitener: &Whitener| -> Vec<f64> {
+        let whites = [whitener.white(&by[0]), whitener.white(&by[1])];
+        halves.iter().enumerate().map(|(row, half)| whites[1 - half][row]).collect()
+    };
+    let energy = fit::energy(&judged(whitener));
+    let powers = powers(whitener, &judged(&whitener.forgetful()));
     let mix = |trial: usize, effort: bool| {
         let pick = |rest: &Rest| if effort { rest.effort.clone() } else { rest.force.clone() };
         let track = trials[trial].track(effort);
@@ -71,14 +77,22 @@ fn frozen(study: &Study, whitener: &Whitener, model: &Model, values: &[Vec<f64>]
         judged.collect()
     };
     let rests = (0..trials.len()).map(|trial| Rest { force: mix(trial, false), effort: mix(trial, true) }).collect();
-    HeldOut { energy, rests, taught: values.to_vec() }
+    HeldOut { energy, powers, rests, taught: values.to_vec() }
 }
 
 /// The same for values that nothing was fitted to.
 #[must_use]
 pub fn as_given(study: &Study, whitener: &Whitener, model: &Model, values: &[f64]) -> HeldOut {
     let rests: Vec<Rest> = study.studio.trials.iter().map(|trial| model.rest(values, trial, Channels::BOTH)).collect();
-    HeldOut { energy: fit::energy(&whitener.white(&rests)), rests, taught: Vec::new() }
+    let powers = powers(whitener, &whitener.forgetful().white(&rests));
+    HeldOut { energy: fit::energy(&whitener.white(&rests)), powers, rests, taught: Vec::new() }
+}
+
+/// Mean squares of scaled residuals, force of all trials and then effort.
+fn powers(whitener: &Whitener, scaled: &[f64]) -> [f64; 2] {
+    let force = whitener.force.iter().flat_map(|floor| &floor.rows).map(Vec::len).sum();
+    let (force, effort) = scaled.split_at(force);
+    [force, effort].map(|rows| fit::energy(rows) / rows.len().max(1) as f64)
 }
 
 /// Root mean square of the floor over the rows of a channel that were seen whole; `None` where the channel is not there.

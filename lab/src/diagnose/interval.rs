@@ -35,7 +35,7 @@ pub fn estimates(stand: &Stand, held: &HeldOut) -> Vec<Estimate> {
             };
             let half = noise.hypot(apart);
             let (low, high) = (axes[at].low, axes[at].high);
-            let value = (stand.values[at] - mean).clamp(low, high);
+            let value = (stand.origin[at] - mean).clamp(low, high);
             Estimate { value, ends: [(value - half).max(low), (value + half).min(high)] }
         })
         .collect()

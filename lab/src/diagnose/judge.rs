@@ -9,6 +9,7 @@ use super::model::{Model, Term, index};
 use super::score::Remainder;
 use super::select::{self, ALARM, Search};
 use super::study::{Stand, Study};
+use crate::effects::Place;
 
 /// What came out of a search.
 pub struct Judgement {
@@ -68,8 +69,9 @@ const MOSTLY: f64 = 0.7;
 /// Least excess of energy, over what twins leave, that is called structure.
 const NOTABLE: f64 = 0.015;
 
-/// Least power over the floor's that is called structure: a residual seven per cent above what the sensors leave.
-const BEYOND: f64 = 1.15;
+/// Least power over the floor's that is called structure: a residual a seventh above what the sensors leave. What a contact
+/// begins and ends with is only known to about a tenth.
+const BEYOND: f64 = 1.3;
 
 /// Root mean square over the floor's beyond which something is left, whatever its pattern.
 const FAR: f64 = 2.0;
@@ -111,16 +113,14 @@ pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<J
     let excess = (stand.view.energy - floor).max(texture) / stand.view.energy.max(f64::MIN_POSITIVE);
     // What twins leave can differ in its pattern; where it is no larger, nothing that matters is left.
     let improved = fold::held_out(study, &stand.whitener, &stand.model, &stand.values, &stand.scene);
-    let times = [false, true].into_iter().filter_map(|effort| {
-        let floor = fold::floor(study, &stand.whitener, effort)?;
-        Some(fold::rms(study, &improved.rests, effort) / floor.max(f64::MIN_POSITIVE))
+    let beyond = structure.p_value < ALARM && excess > NOTABLE;
+    let (doubts, doubtful) = (study.doubts(&stand.values), study.doubtful(stand));
+    let left = [false, true].into_iter().zip(stand.power_ratios()).any(|(effort, ratio)| {
+        let Some(floor) = fold::floor(study, &stand.whitener, effort) else { return false };
+        let times = fold::rms(study, &improved.rests, effort) / floor.max(f64::MIN_POSITIVE);
+        let channel = usize::from(effort);
+        times > FAR.max(doubts[channel].sqrt()) || times > 1.0 && !doubtful[channel] && ratio > BEYOND && beyond
     });
-    let times = times.fold(0.0, f64::max);
-    let left = times > FAR.max(study.doubt(&stand.values).sqrt())
-        || times > 1.0
-            && structure.p_value < ALARM
-            && excess > NOTABLE
-            && structure.energy_ratio > BEYOND.max(study.doubt(&stand.values));
     let as_given = fold::as_given(study, &stand.whitener, &study.nominal, &study.given);
     let verdict = match (stand.model.terms.len() == study.nominal.terms.len(), left) {
         (true, true) => Verdict::Unknown,
@@ -182,11 +182,16 @@ fn rivals_of(study: &Study, search: &Search) -> Vec<Rival> {
         let (base, values) = without(&stand.model, &stand.values, at);
         let fitted = fit::fit(&data, &base, &values, &stand.scene);
         let remainder = Remainder::of(data, &base, &fitted.values, &stand.scene);
-        let mut scores = remainder.scores(&stand.scene);
+        let mut scores = remainder.scores(&stand.scene, &|_| true);
         scores.retain(|score| base.terms.iter().all(|term| term.name() != score.term.name()));
         scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         scores.truncate(TRIED);
         let own = stand.model.terms[at];
+        // What was not looked into does not explain the other channel.
+        let drive = |term: &Term| term.effect.card().place == Place::Drive;
+        if drive(&own) && study.doubtful(stand)[0] {
+            scores.retain(|score| drive(&score.term));
+        }
         let tried = scores.par_iter().filter(|score| score.term.name() != own.name() || score.term.form != own.form);
         rivals.par_extend(tried.map(|score| {
             let model = base.with(score.term);

@@ -2,6 +2,10 @@
 //!
 //! Every channel passes the same Gaussian, so that a linear law between them stays what it was. Velocity and
 //! acceleration are its derivatives: x, v, a, F and effort are all smoothed by exactly the same filter.
+//!
+//! A law that is not linear does not stay what it was: play of a smoothed motion is not the smoothed force of play. Where
+//! the sensors are better than the rows one can afford, the Gaussian is passed in two: the law acts on the motion behind
+//! the first, and what it leaves passes the second.
 
 use super::raw::Raw;
 use crate::rig::Rig;
@@ -22,10 +26,23 @@ pub struct Lens {
     bend: Vec<f64>,
     held: Vec<f64>,
     held_slope: Vec<f64>,
+    passes: Option<Box<Passes>>,
+}
+
+/// A Gaussian as two, one after the other.
+#[derive(Debug, Clone)]
+pub struct Passes {
+    /// What laws act behind, on the raw rows.
+    pub first: Lens,
+    /// What their residual passes then, on the rows of the first.
+    pub second: Lens,
 }
 
 /// Width of a Gaussian whose -3 dB frequency is f: `WIDTH / f`.
 const WIDTH: f64 = 0.132_5;
+
+/// Greatest share of the rate that is looked at.
+const MOST: f64 = 0.2;
 
 /// Rows of the analysis a period of the -3 dB frequency. The Gaussian is down to a ninth where they alias.
 const ROWS: f64 = 5.0;
@@ -34,11 +51,20 @@ const ROWS: f64 = 5.0;
 /// true motion below its step, which the drive's answer to its own steps makes: what cannot be seen is smoothed away.
 const SHARE: f64 = 0.6;
 
+/// Part of the drive's inertia that may be carried beyond the force sensor or with the surface, and the deviation that
+/// noise of its acceleration may add, over that of the force noise. The drive shakes the tool by less than a step of the
+/// encoder; a mass feels that, and seen through the steps it seems lighter than it is.
+const CARRIED: f64 = 0.05;
+const UNSEEN: f64 = 0.2;
+
 /// Widths after which the Gaussian ends: 3e-4 of its peak.
 const SUPPORT: f64 = 4.0;
 
 /// Rows of the analysis that all trials together should have, unless that would blind it.
 const BUDGET: f64 = 9_000.0;
+
+/// How much sharper laws may look than the rows that are kept of what they leave.
+const SHARPER: f64 = 3.0;
 
 impl Lens {
     /// The sharpest filter for the contact: what position noise does to the predicted force stays near what force noise
@@ -52,7 +78,14 @@ impl Lens {
             let slope = contact.damping * position * std::f64::consts::TAU / 3f64.sqrt();
             if slope > 0.0 && force > 0.0 { left.sqrt() / slope } else { f64::INFINITY }
         });
-        Self::cornered(raws, corner, 0.02, BUDGET)
+        let carried = rig.drive.map_or(0.0, |drive| CARRIED * drive.inertia * position);
+        let calm = if carried > 0.0 && force > 0.0 {
+            (UNSEEN * force * 5f64.sqrt() / carried).sqrt() / std::f64::consts::TAU
+        } else {
+            f64::INFINITY
+        };
+        let sharpest = raws.first().map_or(corner, |raw| corner.min(MOST / raw.period));
+        Self::cornered(raws, (corner, calm.min(0.5 * sharpest)), 0.02, BUDGET)
     }
 
     /// The sharpest filter for the drive: the same of what position noise does to inertia times acceleration.
@@ -61,23 +94,52 @@ impl Lens {
         let (position, force) = noises(raws);
         let shaken = rig.drive.map_or(0.0, |drive| drive.inertia * position);
         // Where no force is measured, the effort itself says what the balance is good for: its noise, or a hundredth of it.
-        // A third of it, for nothing else holds the inertia against the noise of the acceleration.
-        let force = if force > 0.0 { force } else { 0.33 * raws.iter().map(effort_noise).fold(0.0, f64::max) };
+        // A tenth of it, for nothing else holds the inertia against the noise of the acceleration.
+        let force = if force > 0.0 { force } else { 0.1 * raws.iter().map(effort_noise).fold(0.0, f64::max) };
         let corner = match (shaken > 0.0, force > 0.0) {
             (true, true) => (3.0 * 5f64.sqrt() * force / shaken).sqrt() / std::f64::consts::TAU,
             _ => f64::INFINITY,
         };
-        Self::cornered(raws, corner, 0.01, 0.5 * BUDGET)
+        Self::cornered(raws, (corner, corner), 0.01, 0.5 * BUDGET)
     }
 
-    /// `corner` in Hz as far as clock and `budget` of rows allow, not below the share `least` of the rate.
-    fn cornered(raws: &[Raw], corner: f64, least: f64, budget: f64) -> Self {
+    /// Laws act behind the first of `corners` in Hz, what they leave is kept behind the second, as far as clock and `budget`
+    /// of rows allow, not below the share `least` of the rate.
+    fn cornered(raws: &[Raw], corners: (f64, f64), least: f64, budget: f64) -> Self {
         let period = raws.first().map_or(1.0, |raw| raw.period);
         let rate = period.recip();
         let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
         let affordable = budget / (ROWS * seconds.max(period));
-        let corner = corner.min(affordable).max(least * rate).min(0.2 * rate);
-        Self::new(WIDTH / corner, period, ((rate / (ROWS * corner)).round() as usize).max(1))
+        let sharpest = corners.0.max(least * rate).min(MOST * rate);
+        let corner = corners.1.min(affordable).max(least * rate).min(MOST * rate);
+        let stride = |corner: f64| ((rate / (ROWS * corner)).round() as usize).max(1);
+        let parts = (sharpest / corner).min(SHARPER) as usize;
+        if parts < 2 {
+            return Self::new(WIDTH / corner, period, stride(corner));
+        }
+        Self::in_two(WIDTH / corner, period, stride(parts as f64 * corner), parts)
+    }
+
+    /// A Gaussian of `blur` seconds in two passes: the first a part in `parts` as wide over rows of `period` seconds, looked
+    /// at every `stride` rows, the second over every `parts` of those.
+    #[must_use]
+    pub fn in_two(blur: f64, period: f64, stride: usize, parts: usize) -> Self {
+        let first = Self::new(blur / parts as f64, period, stride);
+        let left = (blur * blur - first.blur * first.blur).sqrt();
+        let second = Self::new(left, first.step(), parts);
+        Self { passes: Some(Box::new(Passes { first, second })), ..Self::new(blur, period, stride * parts) }
+    }
+
+    /// The two passes it is made of, where laws act between them.
+    #[must_use]
+    pub fn passes(&self) -> Option<&Passes> {
+        self.passes.as_deref()
+    }
+
+    /// What laws act behind: the first pass, or all of it.
+    #[must_use]
+    pub fn first(&self) -> &Self {
+        self.passes().map_or(self, |passes| &passes.first)
     }
 
     /// A Gaussian of `blur` seconds over rows of `period` seconds, looked at every `stride` rows.
@@ -96,10 +158,11 @@ impl Lens {
             bend: plain.bend,
             held: held.level,
             held_slope: held.slope,
+            passes: None,
         }
     }
 
-    /// The same, looking at every row through `part` of the blur: as close to the motion itself as noise lets one see.
+    /// Every row, through `part` of the blur: as close to the motion itself as noise lets one see.
     #[must_use]
     pub fn finer(&self, part: f64) -> Self {
         Self::new((part * self.blur).max(0.6 * self.period), self.period, 1)

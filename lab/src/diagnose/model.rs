@@ -53,6 +53,12 @@ impl Term {
         (0..parameters.len()).map(&mut pick).collect()
     }
 
+    /// Whether both are the same law of the same effect.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        self.name() == other.name() && self.form == other.form
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -183,8 +189,12 @@ impl Model {
     #[must_use]
     pub fn rest(&self, values: &[f64], trial: &Trial, channels: Channels) -> Rest {
         let (force, effort) = (channels.force, channels.effort && self.drive);
-        let force = if force { self.force_rest(values, trial.number, &trial.contact) } else { Vec::new() };
-        let effort = if effort { self.effort_rest(values, trial.number, &trial.drive) } else { Vec::new() };
+        let number = trial.number;
+        let of = |wanted: bool, track: &Track, law: &dyn Fn(&Track) -> Vec<f64>| {
+            if wanted { track.left_by(law) } else { Vec::new() }
+        };
+        let force = of(force, &trial.contact, &|track| self.force_rest(values, number, track));
+        let effort = of(effort, &trial.drive, &|track| self.effort_rest(values, number, track));
         Rest { force, effort }
     }
 
@@ -269,6 +279,9 @@ impl Model {
         let late = values[index::EFFORT_TIMING];
         let mut acting = self.at(Place::Drive, values, trial);
         acting.sort_by_key(|(term, _)| term.effect.card().stage);
+        let limit = acting.iter().filter_map(|(term, values)| term.effect.effort_limit(term.form, values));
+        let cut = limit.reduce(f64::min).and_then(|limit| Some(track.command.as_ref()?.cut(limit)));
+        let (effort, rate) = cut.as_ref().map_or((effort, rate), |[effort, rate]| (effort, rate));
         let mut memories: Vec<Memory> = vec![Memory::default(); acting.len()];
         let (mut commanded, mut transmitted) = (0.0, 0.0);
         let mut rest: Vec<f64> = (0..track.len())

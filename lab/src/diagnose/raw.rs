@@ -19,7 +19,7 @@ pub struct Raw {
     pub force: Option<Vec<f64>>,
     /// Commanded effort.
     pub effort: Option<Vec<f64>>,
-    /// Whether a row was measured; false in a gap and at a drop-out.
+    /// Whether a row is to be trusted; false in a gap, for a while after it, and at a drop-out.
     pub good: Vec<bool>,
     /// What the sensors leave.
     pub figures: Figures,
@@ -28,6 +28,9 @@ pub struct Raw {
     /// Start and length of each gap, s.
     pub gaps: Vec<(f64, f64)>,
 }
+
+/// Lengths of a gap until its end is trusted again: what happened in it nobody saw, and a contact remembers.
+const REMEMBERED: f64 = 3.0;
 
 /// Periods without a row that make a gap.
 const GAP: f64 = 3.5;
@@ -56,7 +59,8 @@ impl Raw {
         let dropouts = bad.iter().zip(time).filter(|(bad, _)| **bad).map(|(_, at)| at - origin).collect();
         let mut good = vec![true; rows];
         for (start, span) in &gaps {
-            let (from, to) = ((start / period).ceil() as usize, ((start + span) / period).floor() as usize);
+            let (from, to) =
+                ((start / period).ceil() as usize, ((start + REMEMBERED * span) / period).floor() as usize);
             good[from.min(rows)..(to + 1).clamp(from.min(rows), rows)].fill(false);
         }
         let [position, force, effort] =

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit::{self, Axis, Data, dot};
+use super::fit::{self, Anchor, Axis, Data, dot};
 use super::model::{Channels, Model, Term};
 use super::tones;
 use crate::effects::{self, Scene, Start, linear};
@@ -44,7 +44,8 @@ impl<'a> Remainder<'a> {
         let columns = fit::jacobian(&data, model, values, &axes, &base);
         let open: Vec<_> = columns.into_iter().filter(|(at, _)| is_open(values[*at], &axes[*at])).collect();
         let mut shift = vec![0.0; values.len()];
-        if let Some(parts) = solve(&open, &base) {
+        let anchor = Anchor::of(model, values, &axes, 0.0);
+        if let Some(parts) = step(&open, &base, &anchor) {
             open.iter().zip(parts.iter()).for_each(|((at, _), part)| shift[*at] = -part);
         }
         let mut tangent: Vec<Vec<f64>> = Vec::new();
@@ -78,9 +79,9 @@ impl<'a> Remainder<'a> {
         (dot(&direction, &direction) > DISTINCT * before && before > 0.0).then_some(direction)
     }
 
-    /// The best that each effect can do alone, over its forms and starts.
+    /// The best that each effect can do alone, over its forms and starts; of those that `asked` lets through.
     #[must_use]
-    pub fn scores(&self, scene: &Scene) -> Vec<Score> {
+    pub fn scores(&self, scene: &Scene, asked: &dyn Fn(&Term) -> bool) -> Vec<Score> {
         let mut scores = Vec::new();
         for effect in effects::ALL {
             if !self.model.takes(effect.card().place) || self.model.holds(effect) {
@@ -88,6 +89,9 @@ impl<'a> Remainder<'a> {
             }
             for form in 0..effect.card().forms.len() {
                 let term = Term { effect, form };
+                if !asked(&term) {
+                    continue;
+                }
                 let mut starts = effect.starts(form, scene);
                 if let Some(tones) = effect.tones(form, scene) {
                     starts.extend(tones::loudest(&tones, self.data, self.model, self.values, &self.base));
@@ -189,6 +193,21 @@ impl<'a> Remainder<'a> {
 
 fn is_open(value: f64, axis: &Axis) -> bool {
     value > axis.low && value < axis.high
+}
+
+/// The step of Gauss and Newton to the least of `base` along `columns`, of which an anchor holds some where they are; turned
+/// round.
+fn step(columns: &[(usize, Vec<f64>)], base: &[f64], anchor: &Anchor) -> Option<DVector<f64>> {
+    let held: Vec<(usize, Vec<f64>)> = columns
+        .iter()
+        .enumerate()
+        .map(|(own, (at, column))| {
+            let holds = (0..columns.len()).map(|row| if row == own { anchor.weight[*at].sqrt() } else { 0.0 });
+            (*at, column.iter().copied().chain(holds).collect())
+        })
+        .collect();
+    let there = std::iter::repeat_n(0.0, columns.len());
+    solve(&held, &base.iter().copied().chain(there).collect::<Vec<_>>())
 }
 
 /// Least squares of `target` on `directions`; `None` where there are none.

@@ -6,8 +6,8 @@ use super::chance::Null;
 use super::fit::{self, Data};
 use super::fold::held_out;
 use super::model::{Model, Term};
-use super::score::Remainder;
-use super::study::{Stand, Study};
+use super::score::{Remainder, Score};
+use super::study::{Stand, Study, View};
 use crate::effects::Stage;
 
 /// An effect that was tried on a stand: fitted in full, and judged on data it did not see.
@@ -23,6 +23,8 @@ pub struct Candidate {
     pub energy: f64,
     /// The same on data that the fit did not see; infinite where that was not asked.
     pub held_out: f64,
+    /// Power over the floor's there, of force and effort.
+    pub powers: [f64; 2],
     /// Energy that it takes from twins, where nothing is missing.
     pub by_chance: f64,
     /// Probability of as much by chance, for it alone.
@@ -37,6 +39,8 @@ pub struct Round {
     pub stand: Stand,
     /// Held-out energy of the stand's own model.
     pub held_out: f64,
+    /// Power over the floor's there, of force and effort.
+    pub powers: [f64; 2],
     /// What was tried, the best first.
     pub candidates: Vec<Candidate>,
     /// Whether there is structure beyond chance, by shapes without a name, by energy or by memory.
@@ -67,17 +71,18 @@ const TWIN_ROWS: f64 = 1.2e6;
 /// Effects at most.
 const MOST_EFFECTS: usize = 4;
 
-/// Candidates that are fitted in full.
-const FITTED: usize = 16;
-
 /// Candidates that are judged on held-out data.
 const JUDGED: usize = 8;
 
 /// Probability of a false alarm on a stand.
 pub const ALARM: f64 = 0.002;
 
-/// Least size of an effect: share of the residual's root mean square.
-const PRACTICAL: f64 = 0.1;
+/// Least size of an effect: share of the residual's root mean square, in a channel it reaches, on data that its fit did not
+/// see.
+const PRACTICAL: f64 = 0.2;
+
+/// Share of the energy in a drive's balance from which an effect is believed, whatever the encoder's steps may leave there.
+const CONVINCING: f64 = 0.05;
 
 /// Least share of the energy above the floor that a further effect has to take.
 const WORTHWHILE: f64 = 0.12;
@@ -97,7 +102,7 @@ pub fn search(study: &Study, say: &dyn Fn(&str)) -> Search {
             stand = study.stand(&model, &better, twins(study), before.as_ref());
             round = self::round(study, stand, say);
         }
-        let more = model.terms.len() < MOST_EFFECTS && is_worth_more(&rounds, &round);
+        let more = model.terms.len() < MOST_EFFECTS && is_worth_more(study, &rounds, &round);
         let next = if more { acceptable(study, &round) } else { None };
         let taken = next.map(|candidate| (candidate.model.clone(), candidate.values.clone()));
         rounds.push(round);
@@ -107,9 +112,6 @@ pub fn search(study: &Study, say: &dyn Fn(&str)) -> Search {
     Search { rounds }
 }
 
-/// Doubt from which a residual within it is not looked into.
-const DOUBTFUL: f64 = 1.2;
-
 /// Power over the floor's that is left once something is named, below which nothing further is looked for: a residual five
 /// per cent above what the sensors leave.
 const ENOUGH: f64 = 1.1;
@@ -118,9 +120,9 @@ const ENOUGH: f64 = 1.1;
 const LAW: f64 = 0.005;
 
 /// Whether what `round` leaves is worth another effect.
-fn is_worth_more(before: &[Round], round: &Round) -> bool {
+fn is_worth_more(study: &Study, before: &[Round], round: &Round) -> bool {
     let Some(first) = before.first() else { return true };
-    let (start, left) = (first.structure.energy_ratio, round.structure.energy_ratio);
+    let (start, left) = (first.structure.energy_ratio, study.trusted_ratio(&round.stand));
     left > ENOUGH && left - 1.0 > LAW * (start - left)
 }
 
@@ -162,62 +164,57 @@ fn reconverged(study: &Study, round: &Round) -> Option<Vec<f64>> {
 
 fn round(study: &Study, stand: Stand, say: &dyn Fn(&str)) -> Round {
     let structure = structure(&stand);
-    let held = held_out(study, &stand.whitener, &stand.model, &stand.values, &stand.scene).energy;
+    let held = held_out(study, &stand.whitener, &stand.model, &stand.values, &stand.scene);
     say("every effect in turn");
     let candidates = candidates(study, &stand);
-    Round { stand, held_out: held, candidates, structure }
+    Round { stand, held_out: held.energy, powers: held.powers, candidates, structure }
 }
 
-/// Null distributions of each score, in the order of the stand's scores.
-fn nulls(stand: &Stand) -> Vec<Null> {
-    let score = |term: &Term| {
-        let of = |view: &super::study::View| {
-            let same = view.scores.iter().find(|s| s.term.name() == term.name() && s.term.form == term.form);
-            same.map_or(0.0, |score| score.gain)
-        };
-        Null::of(&stand.twins.iter().map(of).collect::<Vec<_>>(), 2.0)
+/// Null distributions of `scores`, in their order.
+fn nulls(stand: &Stand, scores: &[&Score]) -> Vec<Null> {
+    let null = |score: &&Score| {
+        let gains: Vec<f64> = stand.twins.iter().map(|twin| twin.gain(&score.term).unwrap_or(0.0)).collect();
+        Null::of(&gains, 2.0)
     };
-    stand.view.scores.iter().map(|own| score(&own.term)).collect()
+    scores.iter().map(null).collect()
 }
 
-/// The distribution, over twins, of the farthest that any effect lies beyond its own.
-fn farthest(stand: &Stand, nulls: &[Null]) -> Null {
-    let of = |view: &super::study::View| {
-        let beyond = stand.view.scores.iter().zip(nulls).map(|(own, null)| {
-            let same = view.scores.iter().find(|s| s.term.name() == own.term.name() && s.term.form == own.term.form);
-            null.beyond(same.map_or(0.0, |score| score.gain))
-        });
+/// The distribution, over twins, of the farthest that any of `scores` lies beyond its own.
+fn farthest(stand: &Stand, scores: &[&Score], nulls: &[Null]) -> Null {
+    let of = |twin: &View| {
+        let beyond = scores.iter().zip(nulls).map(|(own, null)| null.beyond(twin.gain(&own.term).unwrap_or(0.0)));
         beyond.fold(f64::NEG_INFINITY, f64::max)
     };
     Null::of(&stand.twins.iter().map(of).collect::<Vec<_>>(), 1.0)
 }
 
 fn candidates(study: &Study, stand: &Stand) -> Vec<Candidate> {
-    let nulls = nulls(stand);
-    let farthest = farthest(stand, &nulls);
-    let mut order: Vec<usize> = (0..nulls.len()).collect();
-    let gain = |at: usize| stand.view.scores[at].gain;
-    order.sort_by(|a, b| gain(*b).total_cmp(&gain(*a)));
-    order.truncate(FITTED);
+    let scores: Vec<&Score> = stand.view.promising().collect();
+    let nulls = nulls(stand, &scores);
+    let farthest = farthest(stand, &scores, &nulls);
+    // The promising are the best of all that were asked: as if each had been drawn that many times.
+    let draws = stand.view.scores.len() as f64 / scores.len().max(1) as f64;
     let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
     let remainder = Remainder::of(data, &stand.model, &stand.values, &stand.scene);
     let own = stand.view.energy;
-    let mut fitted: Vec<Candidate> = order
+    let mut fitted: Vec<Candidate> = scores
         .par_iter()
-        .map(|&at| {
-            let score = &remainder.polished(&stand.view.scores[at], &stand.scene);
+        .zip(&nulls)
+        .map(|(score, null)| {
+            let score = &remainder.polished(score, &stand.scene);
             let model = stand.model.with(score.term);
             let fit = study.search_fit(&data, stand, &model, &score.values);
             // Twins were asked by projection alone: a search that goes on from there is not held against them in full.
             let gain = score.gain.max(0.5 * (stand.view.energy - fit.energy));
-            let p_any = farthest.p_value(nulls[at].beyond(gain));
-            let p_value = nulls[at].p_value(gain);
+            let p_any = among(farthest.p_value(null.beyond(gain)), draws);
+            let p_value = null.p_value(gain);
             Candidate {
                 term: score.term,
                 model,
                 values: fit.values,
                 energy: fit.energy,
                 held_out: f64::INFINITY,
+                powers: [f64::INFINITY; 2],
                 by_chance: by_chance(stand, &score.term) + hidden(&score.term) * (own - fit.energy).max(0.0),
                 p_value,
                 p_any,
@@ -227,7 +224,8 @@ fn candidates(study: &Study, stand: &Stand) -> Vec<Candidate> {
     fitted.sort_by(|a, b| (a.energy + a.by_chance).total_cmp(&(b.energy + b.by_chance)));
     let judged = JUDGED.min(fitted.len());
     fitted[..judged].par_iter_mut().for_each(|candidate| {
-        candidate.held_out = held_out(study, &stand.whitener, &candidate.model, &candidate.values, &stand.scene).energy;
+        let held = held_out(study, &stand.whitener, &candidate.model, &candidate.values, &stand.scene);
+        (candidate.held_out, candidate.powers) = (held.energy, held.powers);
     });
     fitted.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
     fitted
@@ -244,30 +242,46 @@ pub fn hidden(term: &Term) -> f64 {
     if term.effect.card().stage == Stage::Transmission { 0.15 } else { 0.0 }
 }
 
-/// Mean energy that `term` takes from twins.
+/// The probability that the least of `draws` is as small as `p_value`.
+fn among(p_value: f64, draws: f64) -> f64 {
+    -(draws * (-p_value).ln_1p()).exp_m1()
+}
+
+/// Mean energy that `term` takes from twins: where they were not asked, that of white noise.
 pub fn by_chance(stand: &Stand, term: &Term) -> f64 {
-    let of = |view: &super::study::View| {
-        let same = view.scores.iter().find(|s| s.term.name() == term.name() && s.term.form == term.form);
-        same.map_or(0.0, |score| score.gain)
-    };
-    stand.twins.iter().map(of).sum::<f64>() / stand.twins.len().max(1) as f64
+    let gains: Vec<f64> = stand.twins.iter().filter_map(|twin| twin.gain(term)).collect();
+    if gains.is_empty() {
+        return term.parameters().iter().filter(|parameter| !parameter.fixed).count() as f64;
+    }
+    gains.iter().sum::<f64>() / stand.twins.len() as f64
 }
 
 /// The best candidate of a round, if it is beyond chance and large enough to matter.
 fn acceptable<'a>(study: &Study, round: &'a Round) -> Option<&'a Candidate> {
-    if round.structure.energy_ratio < study.doubt(&round.stand.values) && study.doubt(&round.stand.values) > DOUBTFUL {
-        return None;
-    }
+    let [force, effort] = study.doubtful(&round.stand);
     let left = round.stand.view.energy;
     let above = (left - mean(&round.stand)).max(0.0);
     let able = |candidate: &&Candidate| {
         let gain = left - candidate.energy - candidate.by_chance;
+        // What shakes a drive follows no law: one that takes so much of it is no shaking.
+        let convincing = gain > CONVINCING * left && candidate.p_any < ALARM * ALARM;
         candidate.p_any < ALARM
             && candidate.held_out < round.held_out
-            && gain > PRACTICAL * PRACTICAL * left
+            && is_practical(round, [force, effort && !convincing], candidate)
             && gain > WORTHWHILE * above
     };
     round.candidates.iter().find(able)
+}
+
+/// Whether `candidate` is large enough to matter: it takes something where there is more than twins leave, and where that
+/// is not the encoder's.
+fn is_practical(round: &Round, doubtful: [bool; 2], candidate: &Candidate) -> bool {
+    let ratios = round.stand.power_ratios();
+    (0..2).any(|channel| {
+        !doubtful[channel]
+            && ratios[channel] > 1.0
+            && candidate.powers[channel] < (1.0 - PRACTICAL * PRACTICAL) * round.powers[channel]
+    })
 }
 
 /// Mean energy that twins leave.
@@ -276,7 +290,7 @@ pub fn mean(stand: &Stand) -> f64 {
 }
 
 fn structure(stand: &Stand) -> Structure {
-    let figures = |view: &super::study::View| {
+    let figures = |view: &View| {
         let mut all: Vec<(&'static str, f64)> = view.textures.iter().map(|t| (t.name, t.gain)).collect();
         all.push(("the power of the force", 1e3 * view.powers[0]));
         all.push(("the power of the effort", 1e3 * view.powers[1]));

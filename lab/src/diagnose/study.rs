@@ -33,6 +33,8 @@ pub struct Stand {
     pub model: Model,
     /// Its fitted values.
     pub values: Vec<f64>,
+    /// The values that twins are made from: those whose twins, fitted, give the fitted values in the mean.
+    pub origin: Vec<f64>,
     /// The measures of the trials under it.
     pub scene: Scene,
     /// Floors told by twins.
@@ -49,11 +51,17 @@ impl Stand {
     /// Power of what is left over that of what twins leave, in the channel in which it is greater.
     #[must_use]
     pub fn power_ratio(&self) -> f64 {
-        let ratio = |channel: usize| {
+        let [force, effort] = self.power_ratios();
+        force.max(effort)
+    }
+
+    /// Power of what is left over that of what twins leave, of force and effort.
+    #[must_use]
+    pub fn power_ratios(&self) -> [f64; 2] {
+        [0, 1].map(|channel| {
             let twins = self.twins.iter().map(|view| view.powers[channel]).sum::<f64>();
             if twins > 0.0 { self.view.powers[channel] * self.twins.len() as f64 / twins } else { 0.0 }
-        };
-        ratio(0).max(ratio(1))
+        })
     }
 }
 
@@ -64,7 +72,7 @@ pub struct View {
     pub energy: f64,
     /// Mean square of the residual over its floor, before its memory is taken off, of force and effort: one where all is noise.
     pub powers: [f64; 2],
-    /// What each effect could take.
+    /// What each effect could take; of a twin, the effects that are promising on the recording.
     pub scores: Vec<Score>,
     /// What shapes without a name could take.
     pub textures: Vec<Texture>,
@@ -74,11 +82,38 @@ pub struct View {
     pub shift: Vec<f64>,
 }
 
+/// Effects that are worth a closer look, on the recording and on its twins.
+const PROMISING: usize = 16;
+
+impl View {
+    /// The scores that are worth a closer look, the greatest first.
+    pub fn promising(&self) -> impl Iterator<Item = &Score> {
+        let mut scores: Vec<&Score> = self.scores.iter().collect();
+        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        scores.into_iter().take(PROMISING)
+    }
+
+    /// What `term` could take; `None` where that was not asked.
+    #[must_use]
+    pub fn gain(&self, term: &Term) -> Option<f64> {
+        self.scores.iter().find(|score| score.term.is(term)).map(|score| score.gain)
+    }
+}
+
 /// Power over the noise's from which much is missing.
 const MUCH: f64 = 30.0;
 
+/// Doubt from which a residual within it is not looked into.
+const DOUBTFUL: f64 = 1.2;
+
 /// Part of a rounding's power that is taken for possible.
-const DOUBT: f64 = 0.4;
+const DOUBT: f64 = 1.0;
+
+/// The same of a rounding's power in the balance of the drive.
+const SHAKEN: f64 = 0.012;
+
+/// Share of its scale by which a value may be biased.
+const FAR: f64 = 0.5;
 
 /// Twins that tell the floor.
 const FOR_FLOOR: usize = 24;
@@ -122,18 +157,37 @@ impl Study {
         Ok(Self { studio, nominal, given, is_rotary: rig.coordinate == Coordinate::Rotary })
     }
 
-    /// Power over the floor's that an encoder's steps alone may leave, which twins of a smoothed motion do not show in full:
-    /// a tool that creeps or rests is misplaced by part of a step for as long as it does, and a stiff contact turns that
-    /// into a force far above the sensor's noise. One where the steps do not matter.
+    /// Power over the floor's, of force and effort, that an encoder's steps alone may leave, which twins of a smoothed motion
+    /// do not show in full: a tool that creeps or rests is misplaced by part of a step for as long as it does, and a stiff
+    /// contact turns that into a force far above the sensor's noise; and a drive that answers its encoder's steps shakes the
+    /// tool by less than a step. One where the steps do not matter.
     #[must_use]
-    pub fn doubt(&self, values: &[f64]) -> f64 {
-        let shares = self.studio.raws.iter().map(|raw| {
-            let rounding = raw.figures.position.resolution / 12f64.sqrt();
-            let force = raw.figures.force.map_or(f64::INFINITY, |force| force.noise);
-            values[index::STIFFNESS] * rounding / force.max(f64::MIN_POSITIVE)
-        });
-        let share = shares.filter(|share| share.is_finite()).fold(0.0, f64::max);
-        1.0 + DOUBT * share * share
+    pub fn doubts(&self, values: &[f64]) -> [f64; 2] {
+        let [level, _, bend] = self.studio.drive_lens.noise();
+        let most = |share: &dyn Fn(f64, f64) -> f64| {
+            let shares = self.studio.raws.iter().map(|raw| {
+                let force = raw.figures.force.map_or(f64::INFINITY, |force| force.noise);
+                share(raw.figures.position.resolution / 12f64.sqrt(), force.max(f64::MIN_POSITIVE))
+            });
+            shares.filter(|share| share.is_finite()).fold(0.0, f64::max)
+        };
+        let spring = most(&|rounding, force| values[index::STIFFNESS] * rounding / force);
+        let inertia = most(&|rounding, force| values[index::INERTIA] * rounding * bend / (force * level));
+        [1.0 + DOUBT * spring * spring, 1.0 + SHAKEN * inertia * inertia]
+    }
+
+    /// Whether what `stand` leaves of force and of effort may be the encoder's.
+    #[must_use]
+    pub fn doubtful(&self, stand: &Stand) -> [bool; 2] {
+        let (doubts, ratios) = (self.doubts(&stand.values), stand.power_ratios());
+        [0, 1].map(|channel| doubts[channel] > DOUBTFUL && ratios[channel] < doubts[channel])
+    }
+
+    /// Power over the floor's in the channel in which it is greater, of those that can be trusted.
+    #[must_use]
+    pub fn trusted_ratio(&self, stand: &Stand) -> f64 {
+        let (doubtful, ratios) = (self.doubtful(stand), stand.power_ratios());
+        (0..2).filter(|channel| !doubtful[*channel]).map(|channel| ratios[channel]).fold(0.0, f64::max)
     }
 
     /// The measures of the trials under `model`.
@@ -193,34 +247,61 @@ impl Study {
     #[must_use]
     pub fn stand(&self, model: &Model, start: &[f64], count: usize, before: Option<&Whitener>) -> Stand {
         let (mut values, mut whitener, mut noise) = (start.to_vec(), None, Vec::new());
+        let mut origin = values.clone();
         // The floor depends on the values and they on the floor, weakly: twice is enough.
         for _ in 0..2 {
-            let truth = self.studio.truth(model, &values);
+            let truth = self.studio.truth(model, &origin);
             noise = self.studio.noise(model, &values, &truth);
-            let samples: Vec<Vec<Rest>> = (0..FOR_FLOOR as u64)
+            let twins: Vec<Vec<Trial>> = (0..FOR_FLOOR as u64)
                 .into_par_iter()
-                .map(|number| self.rests(model, &values, &self.studio.twin(&truth, &noise, 1000 + number)))
+                .map(|number| self.studio.twin(&truth, &noise, 1000 + number))
                 .collect();
+            let samples: Vec<Vec<Rest>> = twins.par_iter().map(|twin| self.rests(model, &values, twin)).collect();
             let floors =
                 before.map_or_else(|| self.floors(model, &samples), |b| self.floors(model, &samples).no_worse_than(b));
             let own = floors.learnt(&self.rests(model, &values, &self.studio.trials));
             values = self.fit(model, &values, &own).values;
+            self.unbias(model, &values, &floors, &twins, &mut origin);
             whitener = Some(floors);
         }
         let floors = whitener.unwrap_or_else(|| self.even_floors());
         let whitener = floors.learnt(&self.rests(model, &values, &self.studio.trials));
         let scene = self.scene(model, &values);
-        let truth = self.studio.truth(model, &values);
+        let truth = self.studio.truth(model, &origin);
+        let view = view(&self.studio.trials, &whitener, model, &values, &scene, &|_| true);
+        let promising: Vec<Term> = view.promising().map(|score| score.term).collect();
+        let asked = |term: &Term| promising.iter().any(|other| other.is(term));
         let twins = (0..count as u64)
             .into_par_iter()
             .map(|number| {
                 let twin = self.studio.twin(&truth, &noise, number);
                 let own = floors.learnt(&self.rests(model, &values, &twin));
-                view(&twin, &own, model, &values, &scene)
+                self::view(&twin, &own, model, &values, &scene, &asked)
             })
             .collect();
-        let view = view(&self.studio.trials, &whitener, model, &values, &scene);
-        Stand { model: model.clone(), values, scene, whitener, noise, view, twins }
+        Stand { model: model.clone(), values, origin, scene, whitener, noise, view, twins }
+    }
+
+    /// Moves `origin`, which `twins` were made from, by what their fits miss `values` in the mean.
+    ///
+    /// A fit to noisy motion is biased: noise in the acceleration weakens the mass. So are the fits to twins, and those of
+    /// twins that are made from what the bias hides come out as the recording does (indirect inference: C. Gourieroux,
+    /// A. Monfort, E. Renault, J. Appl. Econom. 8 (1993) S85).
+    fn unbias(&self, model: &Model, values: &[f64], floors: &Whitener, twins: &[Vec<Trial>], origin: &mut [f64]) {
+        let scene = self.scene(model, values);
+        let shifts: Vec<Vec<f64>> = twins
+            .par_iter()
+            .map(|twin| {
+                let whitener = floors.learnt(&self.rests(model, values, twin));
+                let data = Data { trials: twin, whitener: &whitener, rows: None };
+                Remainder::of(data, model, values, &scene).shift
+            })
+            .collect();
+        for ((at, origin), axis) in origin.iter_mut().enumerate().zip(fit::axes(model, values, &scene)) {
+            let mean = shifts.iter().map(|shift| shift[at]).sum::<f64>() / shifts.len().max(1) as f64;
+            let most = FAR * axis.scale;
+            *origin = (*origin - mean.max(-most).min(most)).clamp(axis.low, axis.high);
+        }
     }
 
     /// The best values of `model`, which is that of `stand` and one more effect that starts at `own`.
@@ -258,7 +339,7 @@ impl Study {
     /// Residuals of a twin of `stand`.
     #[must_use]
     pub fn twin_rests(&self, stand: &Stand) -> Vec<Rest> {
-        let truth = self.studio.truth(&stand.model, &stand.values);
+        let truth = self.studio.truth(&stand.model, &stand.origin);
         self.rests(&stand.model, &stand.values, &self.studio.twin(&truth, &stand.noise, 0))
     }
 
@@ -278,7 +359,14 @@ impl Study {
     }
 }
 
-fn view(trials: &[Trial], whitener: &Whitener, model: &Model, values: &[f64], scene: &Scene) -> View {
+fn view(
+    trials: &[Trial],
+    whitener: &Whitener,
+    model: &Model,
+    values: &[f64],
+    scene: &Scene,
+    asked: &dyn Fn(&Term) -> bool,
+) -> View {
     let data = Data { trials, whitener, rows: None };
     let remainder = Remainder::of(data, model, values, scene);
     let forgetful = whitener.forgetful();
@@ -287,7 +375,7 @@ fn view(trials: &[Trial], whitener: &Whitener, model: &Model, values: &[f64], sc
     View {
         powers: [force, effort].map(|rows| fit::energy(rows) / rows.len().max(1) as f64),
         energy: remainder.energy(),
-        scores: remainder.scores(scene),
+        scores: remainder.scores(scene, asked),
         textures: texture::textures(&remainder, data, model, values, scene),
         memory: texture::memory(&remainder, data),
         shift: remainder.shift.clone(),

@@ -1,6 +1,6 @@
 //! A trial as the analysis sees it: smoothed motion, force and effort at even steps.
 
-use super::lens::Lens;
+use super::lens::{Lens, Passes};
 use super::raw::Raw;
 
 /// A smoothed trial. All columns are of equal length.
@@ -20,6 +20,8 @@ pub struct Track {
     pub still: Vec<f64>,
     /// What of the velocity is noise.
     pub speed_noise: f64,
+    /// Speed at which the encoder steps once within the filter.
+    pub pace: f64,
     /// Force reading.
     pub force: Option<Vec<f64>>,
     /// Its rate.
@@ -28,8 +30,37 @@ pub struct Track {
     pub effort: Option<Vec<f64>>,
     /// Rate of the effort.
     pub effort_rate: Option<Vec<f64>>,
+    /// The effort row by row as it was commanded, and the filter that made the columns of it.
+    pub command: Option<Command>,
     /// Whether a row was seen whole: not at an end, not beside a gap.
     pub seen: Vec<bool>,
+    /// The same motion as laws see it, where the filter is passed in two.
+    pub near: Option<Box<Near>>,
+}
+
+/// A command before any filter.
+#[derive(Debug, Clone)]
+pub struct Command {
+    rows: Vec<f64>,
+    lens: Lens,
+}
+
+impl Command {
+    /// The smoothed effort and its rate, if the rows are cut at `limit`.
+    #[must_use]
+    pub fn cut(&self, limit: f64) -> [Vec<f64>; 2] {
+        let rows: Vec<f64> = self.rows.iter().map(|effort| effort.max(-limit).min(limit)).collect();
+        [self.lens.held(&rows), self.lens.held_slope(&rows)]
+    }
+}
+
+/// A sharper view, and the filter that makes of what a law leaves there what it leaves in the track it belongs to.
+#[derive(Debug, Clone)]
+pub struct Near {
+    /// The view.
+    pub track: Track,
+    /// The rest of the filter.
+    pub rest: Lens,
 }
 
 /// A trial through both lenses: the contact is looked at as sharply as its force allows, the drive as its acceleration does.
@@ -58,6 +89,10 @@ impl Track {
     /// Looks at `raw` through `lens`.
     #[must_use]
     pub fn of(raw: &Raw, lens: &Lens) -> Self {
+        let near = lens.passes().map(|passes| {
+            let Passes { first, second } = passes;
+            Box::new(Near { track: Self::of(raw, first), rest: second.clone() })
+        });
         let [_, slope_noise, bend_noise] = lens.noise();
         let noise = raw.figures.position.noise;
         let (speed_noise, shake_noise) = (noise * slope_noise, noise * bend_noise);
@@ -74,11 +109,28 @@ impl Track {
             velocity,
             acceleration,
             speed_noise,
+            pace: raw.figures.position.resolution / lens.blur,
             force: raw.force.as_ref().map(|force| lens.level(force)),
             force_rate: raw.force.as_ref().map(|force| lens.slope(force)),
             effort: raw.effort.as_ref().map(|effort| lens.held(effort)),
             effort_rate: raw.effort.as_ref().map(|effort| lens.held_slope(effort)),
+            command: raw.effort.as_ref().map(|effort| Command { rows: effort.clone(), lens: lens.clone() }),
             seen: seen(raw, lens),
+            near,
+        }
+    }
+
+    /// The view that laws act in.
+    #[must_use]
+    pub fn behind(&self) -> &Self {
+        self.near.as_ref().map_or(self, |near| &near.track)
+    }
+
+    /// What `law` leaves of it: of the sharper view, if there is one, and smoothed like the rest then.
+    pub fn left_by(&self, law: impl Fn(&Self) -> Vec<f64>) -> Vec<f64> {
+        match &self.near {
+            Some(near) => near.rest.level(&law(&near.track)),
+            None => law(self),
         }
     }
 

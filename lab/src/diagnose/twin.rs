@@ -73,7 +73,7 @@ impl Studio {
     /// Prepares `raws`.
     #[must_use]
     pub fn new(raws: Vec<Raw>, lens: Lens, drive_lens: Lens, seed: u64) -> Self {
-        let finest = lens.finer(FINENESS);
+        let finest = lens.first().finer(FINENESS);
         let fine = raws.par_iter().map(|raw| Track::of(raw, &finest)).collect();
         let least = (2.0 * EDGE * lens.blur / lens.period).ceil() as usize;
         let rests = raws.iter().map(|raw| rests(raw, least)).collect();

@@ -116,7 +116,10 @@ impl<'a> Bench<'a> {
             force_rate: None,
             effort: None,
             effort_rate: None,
+            command: None,
+            pace: 0.0,
             seen,
+            near: None,
         }
     }
 
