@@ -20,7 +20,7 @@ struct Kept {
 }
 
 const ANEW: Kept = Kept { young: 0, growth: 1.0 };
-const RUNNING: Kept = Kept { young: 80, growth: 256.0 };
+const RUNNING: Kept = Kept { young: 80, growth: 512.0 };
 
 type Step = fn(&[Row], Theta) -> (Vector2<f64>, i32);
 
