@@ -85,6 +85,7 @@ pub struct View<'a, M: Memory> {
 }
 
 impl<'a, M: Memory> View<'a, M> {
+    #[inline(always)]
     pub fn of(config: &'a BlockConfig, memory: &'a M, recent: Recent<'a>, estimate: Impedance) -> Self {
         let local = memory.local(recent, estimate);
         let solution = Solution::of(local.second(), config);

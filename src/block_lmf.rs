@@ -6,7 +6,7 @@ use crate::cubic::depressed_root;
 use crate::error::ConfigError;
 use crate::flags::Flags;
 use crate::fourth::Fourth;
-use crate::math::{larger, sqrt};
+use crate::math::larger;
 use crate::memory::{Memory, Moments};
 use crate::running::Running;
 use crate::sums::{Solution, Sums};
@@ -66,9 +66,9 @@ impl BlockLeastMeanFourth {
     }
 }
 
-/// The unit vector along which to search; `None` where there is no gradient. Where B cannot be told, Newton's direction
-/// is that of K alone.
-pub(crate) fn unit_direction<M: Memory>(
+/// Along which to search, its larger entry of size one; `None` where there is no gradient. Where B cannot be told, Newton's
+/// direction is that of K alone.
+pub(crate) fn way_down<M: Memory>(
     direction: Direction,
     view: &View<'_, M>,
     descent: Impedance,
@@ -86,16 +86,14 @@ pub(crate) fn unit_direction<M: Memory>(
     if largest.is_nan() || largest <= 0.0 {
         return None;
     }
-    let d = Impedance { stiffness: d.stiffness / largest, damping: d.damping / largest };
-    let norm = sqrt(d.stiffness * d.stiffness + d.damping * d.damping);
-    Some(Impedance { stiffness: d.stiffness / norm, damping: d.damping / norm })
+    Some(Impedance { stiffness: d.stiffness / largest, damping: d.damping / largest })
 }
 
 /// Where the quadratic term takes more than this share of the curvature, its centre is looked at from nearby: with less,
 /// the difference of the two loses no more than a digit of a bit.
 const SHARE: f32 = 0.5;
 
-/// How far to go along the unit vector `u`; `None` where nothing is excited along it.
+/// How far to go along `u`, in its length; `None` where nothing is excited along it.
 fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
     let here = &view.local;
     let quartic = here.quartic(u);
@@ -129,7 +127,7 @@ impl Criterion for LeastMeanFourth {
 
     fn advance(&self, view: &View<'_, Running<Fourth>>) -> Move {
         let here = &view.local;
-        let step = unit_direction(self.direction, view, here.descent(), here.hessian())
+        let step = way_down(self.direction, view, here.descent(), here.hessian())
             .and_then(|u| Some((length_along(u, view)?, u)))
             .map_or(Impedance::ZERO, |(length, u)| Impedance::ZERO.moved(length, u));
         Move {

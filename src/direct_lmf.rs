@@ -1,11 +1,11 @@
 //! Block least mean fourth as it is printed: the window summed anew, twice, for each line search.
 
 use crate::block::{BlockConfig, BlockLaw, Criterion, Move, View};
-use crate::block_lmf::{Direction, unit_direction};
+use crate::block_lmf::{Direction, way_down};
 use crate::contact::Impedance;
 use crate::cubic::depressed_root;
 use crate::error::ConfigError;
-use crate::math::larger;
+use crate::math::{larger, sqrt};
 use crate::memory::Anew;
 use crate::sym2::Sym2;
 use crate::window::Recent;
@@ -102,7 +102,9 @@ fn search_along(u: Impedance, view: &View<'_, Anew>, powers: &Powers) -> Option<
 }
 
 fn search(direction: Direction, view: &View<'_, Anew>, powers: &Powers) -> Option<LineSearch> {
-    search_along(unit_direction(direction, view, powers.descent, powers.hessian)?, view, powers)
+    let d = way_down(direction, view, powers.descent, powers.hessian)?;
+    let norm = sqrt(d.stiffness * d.stiffness + d.damping * d.damping);
+    search_along(Impedance { stiffness: d.stiffness / norm, damping: d.damping / norm }, view, powers)
 }
 
 impl Criterion for LeastMeanFourth {

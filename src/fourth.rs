@@ -16,6 +16,7 @@ pub struct Fourth {
 }
 
 impl Moments for Fourth {
+    #[inline(always)]
     fn of(o: &Observation, e: f32) -> Self {
         let second = Sums::of(o, e);
         let Sym2 { xx, xv, vv } = second.regressors;

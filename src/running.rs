@@ -215,9 +215,9 @@ impl<M: Moments> Memory for Running<M> {
             return self.next.seen_from(estimate);
         }
         if self.tail.centre == self.next.centre {
-            let mut both = self.tail;
-            both.moments.add(&self.next.moments);
-            return both.seen_from(estimate);
+            let mut both = self.tail.moments;
+            both.add(&self.next.moments);
+            return both.shifted(estimate.moved(-1.0, self.tail.centre));
         }
         let mut both = self.tail.seen_from(estimate);
         both.add(&self.next.seen_from(estimate));

@@ -34,6 +34,7 @@ impl Sums {
 }
 
 impl Moments for Sums {
+    #[inline(always)]
     fn of(o: &Observation, e: f32) -> Self {
         let (x, v) = (o.penetration, o.rate);
         Self {
@@ -75,6 +76,7 @@ impl Moments for Sums {
     }
 
     /// `sum phi e' = sum phi e - R d`, `sum e'^2 = sum e^2 - d'(sum phi e + sum phi e')`.
+    #[inline(always)]
     fn shifted(&self, shift: Impedance) -> Self {
         let moved = self.regressors.times(shift);
         let misfit = Impedance {

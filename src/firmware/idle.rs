@@ -15,9 +15,11 @@ use semihosting::fs::File;
 use semihosting::io::{self, Read, Write};
 use stm32f4xx_hal::pac;
 
-use super::board::{CLOCK_HZ, TICK_HZ, start_clock};
+use super::board::{CLOCK_HZ, start_clock};
 use super::tick::{Tick, counters};
 
+/// Ticks of the interrupt in a second.
+const TICK_HZ: u32 = 1_000;
 /// Samples a block: one semihosting call stops the core for about as long whatever it carries.
 const BLOCK: usize = 64;
 /// One place of a queue stays empty, so this holds two blocks.

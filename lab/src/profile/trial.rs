@@ -1,0 +1,59 @@
+//! The recording that every profile is of: contact, its loss, a material that jumps, an onset on something stiff.
+
+use palpate::{
+    BenchConfig, BlockConfig, EwrlsConfig, GradientConfig, Method, Methods, ResetRlsConfig, Sample, SprlsConfig,
+    StreamConfig,
+};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal, NormalError};
+
+/// Samples at 1 kHz.
+const SAMPLES: u32 = 4_000;
+
+/// Stiffness in N/m from a time in seconds on; none: nothing is touched.
+const COURSE: [(f64, Option<f64>); 7] = [
+    (0.0, None),
+    (0.2, Some(300.0)),
+    (1.1, Some(900.0)),
+    (1.9, Some(250.0)),
+    (2.5, None),
+    (2.7, Some(1800.0)),
+    (3.8, None),
+];
+
+/// The settings of all estimators: the paper's.
+pub fn config() -> BenchConfig {
+    BenchConfig {
+        stream: StreamConfig::BENCH,
+        methods: Method::ALL.into_iter().fold(Methods::default(), Methods::with),
+        rls: EwrlsConfig::rls(),
+        ewrls: EwrlsConfig::default(),
+        sprls: SprlsConfig::default(),
+        reset_rls: ResetRlsConfig::default(),
+        gradient: GradientConfig::default(),
+        block: BlockConfig::default(),
+    }
+}
+
+/// The samples: 10 mm deep with a dither of 3.3 mm at 10 Hz, B = 5 N s/m, 0.09 N of noise, 0.1 mm a count. The roots and
+/// sines are those of `libm`, so the samples are the same everywhere.
+///
+/// # Errors
+/// None for the constants above.
+pub fn samples() -> Result<Vec<Sample>, NormalError> {
+    let mut random = ChaCha8Rng::seed_from_u64(20);
+    let noise = Normal::new(0.0, 0.09)?;
+    Ok((0..SAMPLES)
+        .map(|k| {
+            let t = f64::from(k) * 1e-3;
+            let stiffness = COURSE.iter().rev().find(|(from, _)| *from <= t).and_then(|(_, stiffness)| *stiffness);
+            let phase = 62.831_853 * t;
+            let middle = if stiffness.is_some() { 0.010 } else { -0.010 };
+            let (x, v) = (middle + 0.0033 * libm::sin(phase), 0.0033 * 62.831_853 * libm::cos(phase));
+            let force = stiffness.map_or(0.0, |k| k * x + 5.0 * v) + noise.sample(&mut random);
+            let position = libm::round(x * 1e4) * 1e-4;
+            Sample { position: position as f32, force: force as f32, elapsed: 1e-3 }
+        })
+        .collect())
+}
