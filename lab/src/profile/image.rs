@@ -41,8 +41,6 @@ pub struct Image {
     /// Every function by its address.
     pub functions: BTreeMap<u32, Function>,
     labels: BTreeMap<String, u32>,
-    /// The contents of `.debug_frame`.
-    pub frames: Vec<u8>,
 }
 
 impl Image {
@@ -53,16 +51,8 @@ impl Image {
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
         let file = object::File::parse(bytes.as_slice()).with_context(|| format!("{} is no image", path.display()))?;
-        let mut image = Self {
-            path: path.to_owned(),
-            code: BTreeMap::new(),
-            functions: BTreeMap::new(),
-            labels: BTreeMap::new(),
-            frames: Vec::new(),
-        };
-        if let Some(section) = file.section_by_name(".debug_frame") {
-            image.frames = section.uncompressed_data()?.into_owned();
-        }
+        let mut image =
+            Self { path: path.to_owned(), code: BTreeMap::new(), functions: BTreeMap::new(), labels: BTreeMap::new() };
         image.name(&file);
         for section in file.sections().filter(|section| section.kind() == SectionKind::Text) {
             image.disassemble(section.data()?, u32::try_from(section.address())?)?;

@@ -2,7 +2,7 @@
 
 use palpate::{
     BenchConfig, BlockConfig, EwrlsConfig, GradientConfig, Method, Methods, ResetRlsConfig, Sample, SprlsConfig,
-    StreamConfig,
+    Stream, StreamConfig,
 };
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -56,4 +56,20 @@ pub fn samples() -> Result<Vec<Sample>, NormalError> {
             Sample { position: position as f32, force: force as f32, elapsed: 1e-3 }
         })
         .collect())
+}
+
+/// The samples at which a law is updated: those in contact, by the same front end as in the image.
+///
+/// # Errors
+/// None for the settings above.
+pub fn updates(samples: &[Sample]) -> anyhow::Result<Vec<usize>> {
+    let mut stream = Stream::<1>::new(config().stream).map_err(|error| anyhow::anyhow!("{error:?}"))?;
+    let mut at = Vec::new();
+    for (k, &sample) in samples.iter().enumerate() {
+        let event = stream.update(sample).map_err(|why| anyhow::anyhow!("sample {k}: {why:?}"))?;
+        if event.reading.contact && !event.reading.restarted {
+            at.push(k);
+        }
+    }
+    Ok(at)
 }

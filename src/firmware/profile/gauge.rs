@@ -30,7 +30,7 @@ struct Reading {
     stack: u32,
 }
 
-// `palpate_pass(function, argument, reading)`: paints 1 KiB below the stack pointer, reads both counters, calls
+// `palpate_pass(function, argument, reading)`: paints 2 KiB below the stack pointer, reads both counters, calls
 // `function(argument)`, reads both again, and looks how far the paint is gone.
 global_asm!(
     ".section .text.palpate_pass, \"ax\"",
@@ -40,7 +40,7 @@ global_asm!(
     "push {{r4-r10, lr}}",
     "mov r4, r0",
     "mov r8, r2",
-    "sub r0, sp, #1024",
+    "sub r0, sp, #2048",
     "movw r3, #0xa5a5",
     "movt r3, #0xa5a5",
     "1: str r3, [r0], #4",
@@ -62,7 +62,7 @@ global_asm!(
     "str r7, [r8, #4]",
     "str r10, [r8, #8]",
     "str r4, [r8, #12]",
-    "sub r0, sp, #1024",
+    "sub r0, sp, #2048",
     "movw r3, #0xa5a5",
     "movt r3, #0xa5a5",
     "2: ldr r2, [r0]",
