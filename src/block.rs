@@ -109,6 +109,24 @@ pub struct BlockLaw<C> {
     pub(crate) criterion: C,
 }
 
+impl<C: Criterion> BlockLaw<C> {
+    /// Moves the estimate by the newest of `recent`, and nothing else: no interval, fill or excitation. The state is that of
+    /// [`Law::update`], and either may follow on the other. Returns the innovation, in internal units of force.
+    pub fn learn(&self, state: &mut BlockState<C::Memory>, recent: Recent<'_>) -> f32 {
+        let recent = recent.last(self.window());
+        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
+        state.memory.follow(&self.config, recent, state.estimate);
+        if recent.len() >= usize::from(self.config.minimum_fill) {
+            let view = View::of(&self.config, &state.memory, recent, state.estimate);
+            let moved = state.estimate.moved(1.0, self.criterion.advance(&view).step);
+            if moved.is_finite() {
+                state.estimate = moved;
+            }
+        }
+        innovation
+    }
+}
+
 impl<C: Criterion> Law for BlockLaw<C> {
     type State = BlockState<C::Memory>;
 

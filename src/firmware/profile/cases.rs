@@ -32,6 +32,17 @@ impl<L: Law> Work for Update<'_, L> {
     }
 }
 
+/// One update without what tells of its quality.
+struct Learn<F> {
+    learn: F,
+}
+
+impl<F: FnMut()> Work for Learn<F> {
+    fn work(&mut self) {
+        (self.learn)();
+    }
+}
+
 /// Nothing, for what the counting itself takes.
 struct Nothing;
 
@@ -70,6 +81,7 @@ pub fn run(recording: &Recording, mut gauge: Gauge) -> Result<(), Fault> {
         laws.law("bls_anew", window, direct::BlockLeastSquares::new(block))?;
         laws.law("blmf_anew", window, direct::BlockLeastMeanFourth::new(block, Direction::SteepestDescent))?;
     }
+    laws.estimate_alone()?;
     samples_to_estimates(recording, &mut gauge)
 }
 
@@ -97,6 +109,54 @@ impl Laws<'_> {
                     Update { law: black_box(&law), state: &mut state, recent, step: MaybeUninit::uninit() };
                 self.gauge.pass(&mut update)?;
                 black_box(&update.step);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Laws<'_> {
+    /// What moves the estimate, without the interval and the rest that tells of its quality: the job that others do, too.
+    fn estimate_alone(&mut self) -> Result<(), Fault> {
+        let config = &self.recording.config;
+        let ewrls = Ewrls::new(config.ewrls).map_err(unsound)?;
+        self.learn("ewrls_alone", 0, &ewrls, |state, recent| {
+            ewrls.learn(state, &recent.newest().unwrap_or_default());
+        })?;
+        let sprls = Sprls::new(config.sprls).map_err(unsound)?;
+        self.learn("sprls_alone", 0, &sprls, |state, recent| {
+            sprls.learn(state, &recent.newest().unwrap_or_default());
+        })?;
+        let block = BlockConfig::of(300);
+        let bls = BlockLeastSquares::new(block).map_err(unsound)?;
+        self.learn("bls_alone", 300, &bls, |state, recent| {
+            bls.learn(state, recent);
+        })?;
+        let blmf = BlockLeastMeanFourth::new(block, Direction::SteepestDescent).map_err(unsound)?;
+        self.learn("blmf_alone", 300, &blmf, |state, recent| {
+            blmf.learn(state, recent);
+        })
+    }
+
+    fn learn<L: Law>(
+        &mut self,
+        name: &str,
+        window: u16,
+        law: &L,
+        mut learn: impl FnMut(&mut L::State, Recent<'_>),
+    ) -> Result<(), Fault> {
+        let ring = usize::from(window) * size_of::<Observation>();
+        self.gauge.case(name, window, size_of::<L::State>(), ring)?;
+        let mut stream = Stream::<RING>::new(self.recording.config.stream).map_err(unsound)?;
+        let mut state = law.start();
+        for &sample in self.recording.samples {
+            let event = stream.update(sample).map_err(|_| "a sample was rejected")?;
+            if event.lost {
+                state = law.start();
+            }
+            if event.reading.contact && !event.reading.restarted {
+                let recent = stream.recent();
+                self.gauge.pass(&mut Learn { learn: || learn(black_box(&mut state), recent) })?;
             }
         }
         Ok(())
