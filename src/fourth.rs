@@ -44,13 +44,16 @@ impl Moments for Fourth {
         Self { second, sums }
     }
 
-    fn add(&mut self, other: &Self) {
-        self.second.add(&other.second);
-        for (sum, term) in self.sums.iter_mut().zip(&other.sums) {
-            *sum += term;
+    #[inline(always)]
+    fn with(&self, other: &Self) -> Self {
+        let mut sums = self.sums;
+        for (sum, more) in sums.iter_mut().zip(&other.sums) {
+            *sum += more;
         }
+        Self { second: self.second.with(&other.second), sums }
     }
 
+    #[inline(always)]
     fn gather(&mut self, lost: &mut Self, terms: &Self, sign: f32) {
         self.second.gather(&mut lost.second, &terms.second, sign);
         for ((sum, lost), term) in self.sums.iter_mut().zip(&mut lost.sums).zip(&terms.sums) {

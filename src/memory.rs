@@ -9,8 +9,9 @@ use crate::window::Recent;
 pub trait Moments: Copy + Default + core::fmt::Debug {
     /// Of one sample with misfit `e`.
     fn of(o: &Observation, e: f32) -> Self;
-    /// With the samples of `other`, which are summed about the same estimate.
-    fn add(&mut self, other: &Self);
+    /// The samples of both, which are summed about the same estimate.
+    #[must_use]
+    fn with(&self, other: &Self) -> Self;
     /// Adds `sign` times `terms` by Kahan's summation: `lost` is what rounding has kept out so far.
     fn gather(&mut self, lost: &mut Self, terms: &Self, sign: f32);
     /// The same samples about an estimate that is `shift` further.
@@ -47,6 +48,7 @@ impl Memory for Anew {
 }
 
 /// One term of Kahan's summation.
+#[inline(always)]
 pub fn gather(sum: &mut f32, lost: &mut f32, term: f32) {
     let term = term - *lost;
     let next = *sum + term;

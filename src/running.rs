@@ -32,10 +32,12 @@ impl<M: Moments> Run<M> {
         Self { centre, moments: M::default(), lost: M::default() }
     }
 
+    #[inline(never)]
     fn add(&mut self, o: &Observation) {
         self.moments.gather(&mut self.lost, &M::of(o, o.misfit(self.centre)), 1.0);
     }
 
+    #[inline(never)]
     fn remove(&mut self, o: &Observation) {
         self.moments.gather(&mut self.lost, &M::of(o, o.misfit(self.centre)), -1.0);
     }
@@ -215,12 +217,8 @@ impl<M: Moments> Memory for Running<M> {
             return self.next.seen_from(estimate);
         }
         if self.tail.centre == self.next.centre {
-            let mut both = self.tail.moments;
-            both.add(&self.next.moments);
-            return both.shifted(estimate.moved(-1.0, self.tail.centre));
+            return self.tail.moments.with(&self.next.moments).shifted(estimate.moved(-1.0, self.tail.centre));
         }
-        let mut both = self.tail.seen_from(estimate);
-        both.add(&self.next.seen_from(estimate));
-        both
+        self.tail.seen_from(estimate).with(&self.next.seen_from(estimate))
     }
 }

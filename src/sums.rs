@@ -28,7 +28,7 @@ impl Sums {
     /// Over all of `recent`, about `centre`.
     pub fn over(recent: Recent<'_>, centre: Impedance) -> Self {
         let mut s = Self::default();
-        recent.for_each(|o| s.add(&Self::of(o, o.misfit(centre))));
+        recent.for_each(|o| s = s.with(&Self::of(o, o.misfit(centre))));
         s
     }
 }
@@ -46,18 +46,19 @@ impl Moments for Sums {
         }
     }
 
-    fn add(&mut self, other: &Self) {
-        self.samples += other.samples;
-        self.regressors.xx += other.regressors.xx;
-        self.regressors.xv += other.regressors.xv;
-        self.regressors.vv += other.regressors.vv;
-        self.regressor.stiffness += other.regressor.stiffness;
-        self.regressor.damping += other.regressor.damping;
-        self.misfit.stiffness += other.misfit.stiffness;
-        self.misfit.damping += other.misfit.damping;
-        self.misfit_energy += other.misfit_energy;
+    #[inline(always)]
+    fn with(&self, other: &Self) -> Self {
+        let (r, s) = (&self.regressors, &other.regressors);
+        Self {
+            samples: self.samples + other.samples,
+            regressors: Sym2 { xx: r.xx + s.xx, xv: r.xv + s.xv, vv: r.vv + s.vv },
+            regressor: plus(self.regressor, other.regressor),
+            misfit: plus(self.misfit, other.misfit),
+            misfit_energy: self.misfit_energy + other.misfit_energy,
+        }
     }
 
+    #[inline(always)]
     fn gather(&mut self, lost: &mut Self, terms: &Self, sign: f32) {
         // Counts and whole numbers are exact.
         self.samples += sign * terms.samples;
@@ -92,6 +93,10 @@ impl Moments for Sums {
     fn second(&self) -> &Sums {
         self
     }
+}
+
+fn plus(a: Impedance, b: Impedance) -> Impedance {
+    Impedance { stiffness: a.stiffness + b.stiffness, damping: a.damping + b.damping }
 }
 
 /// The least-squares solution of a window, as a move from the estimate that the sums were taken about.
