@@ -65,8 +65,16 @@ impl Profile {
     /// # Errors
     /// A tool is missing, the image fails, or the two counts disagree.
     pub fn take(leave: Leave) -> Result<Self> {
+        Self::of(leave, "palpate", "profile")
+    }
+
+    /// The same of another image that measures by the same gauge: an example of `package`.
+    ///
+    /// # Errors
+    /// As [`Self::take`].
+    pub fn of(leave: Leave, package: &str, example: &str) -> Result<Self> {
         let emulator = emulator::Emulator::prepare(tools::for_the_device(leave)?)?;
-        let image = Image::read(&device::build("palpate", "profile")?)?;
+        let image = Image::read(&device::build(package, example)?)?;
         let cases = counts::combine(&emulator.with_plugin(&image)?, &emulator.with_clock(&image)?)?;
         let figures = figures::of(&image, &cases, &trial::updates(&trial::samples()?)?)?;
         Ok(Self { image, cases, figures })
@@ -85,6 +93,14 @@ impl Profile {
     pub fn beyond_budget(&self) -> Result<String> {
         budget::differences(&self.figures, &budget::path(&device::project()?))
     }
+}
+
+/// The observations in contact of the recording that is measured, in internal units.
+///
+/// # Errors
+/// None for the settings of the recording.
+pub fn observations() -> Result<Vec<palpate::Observation>> {
+    trial::observations(&trial::samples()?)
 }
 
 /// Names of panics that can be reached from the function `entry` of an image, and of functions that call what cannot be seen.

@@ -30,13 +30,19 @@ impl<'a> Calls<'a> {
         calls
     }
 
-    /// Every function that can be reached from the one at `start`, itself among them.
+    /// Every function that can be reached from the one at `start`, itself among them; of a panic its door and no more, for
+    /// nothing comes back from there.
     pub fn reached(&self, start: u32) -> Vec<&'a Function> {
         let (mut seen, mut open) = (BTreeSet::from([start]), vec![start]);
         while let Some(at) = open.pop() {
-            open.extend(self.called.get(&at).into_iter().flatten().filter(|to| seen.insert(**to)));
+            open.extend(self.calls_of(at).filter(|to| seen.insert(**to)));
         }
         seen.iter().filter_map(|at| self.image.functions.get(at)).collect()
+    }
+
+    fn calls_of(&self, start: u32) -> impl Iterator<Item = &u32> {
+        let returns = !self.image.functions.get(&start).is_some_and(is_panic);
+        self.called.get(&start).into_iter().flatten().filter(move |_| returns)
     }
 
     /// The functions among those reached from `start` that call what no one can see from here.
@@ -56,7 +62,7 @@ impl<'a> Calls<'a> {
         }
         above.push(start);
         let mut below = 0;
-        for &to in self.called.get(&start).into_iter().flatten() {
+        for &to in self.calls_of(start) {
             below = below.max(self.deepest(to, above)?);
         }
         above.pop();

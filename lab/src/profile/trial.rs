@@ -1,12 +1,13 @@
 //! The recording that every profile is of: contact, its loss, a material that jumps, an onset on something stiff.
 
+use anyhow::{Result, anyhow};
 use palpate::{
-    BenchConfig, BlockConfig, EwrlsConfig, GradientConfig, Method, Methods, ResetRlsConfig, Sample, SprlsConfig,
-    Stream, StreamConfig,
+    BenchConfig, BlockConfig, EwrlsConfig, GradientConfig, Method, Methods, Observation, ResetRlsConfig, Sample,
+    SprlsConfig, Stream, StreamConfig,
 };
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution as _, Normal, NormalError};
+use rand_distr::{Distribution as _, Normal};
 
 /// Samples at 1 kHz.
 const SAMPLES: u32 = 4_000;
@@ -41,7 +42,7 @@ pub fn config() -> BenchConfig {
 ///
 /// # Errors
 /// None for the constants above.
-pub fn samples() -> Result<Vec<Sample>, NormalError> {
+pub fn samples() -> Result<Vec<Sample>> {
     let mut random = ChaCha8Rng::seed_from_u64(20);
     let noise = Normal::new(0.0, 0.09)?;
     Ok((0..SAMPLES)
@@ -62,14 +63,26 @@ pub fn samples() -> Result<Vec<Sample>, NormalError> {
 ///
 /// # Errors
 /// None for the settings above.
-pub fn updates(samples: &[Sample]) -> anyhow::Result<Vec<usize>> {
-    let mut stream = Stream::<1>::new(config().stream).map_err(|error| anyhow::anyhow!("{error:?}"))?;
-    let mut at = Vec::new();
+pub fn updates(samples: &[Sample]) -> Result<Vec<usize>> {
+    Ok(in_contact(samples)?.into_iter().map(|(k, _)| k).collect())
+}
+
+/// What they come to.
+///
+/// # Errors
+/// None for the settings above.
+pub fn observations(samples: &[Sample]) -> Result<Vec<Observation>> {
+    Ok(in_contact(samples)?.into_iter().map(|(_, observation)| observation).collect())
+}
+
+fn in_contact(samples: &[Sample]) -> Result<Vec<(usize, Observation)>> {
+    let mut stream = Stream::<1>::new(config().stream).map_err(|error| anyhow!("{error:?}"))?;
+    let mut found = Vec::new();
     for (k, &sample) in samples.iter().enumerate() {
-        let event = stream.update(sample).map_err(|why| anyhow::anyhow!("sample {k}: {why:?}"))?;
+        let event = stream.update(sample).map_err(|why| anyhow!("sample {k}: {why:?}"))?;
         if event.reading.contact && !event.reading.restarted {
-            at.push(k);
+            found.push((k, event.reading.observation));
         }
     }
-    Ok(at)
+    Ok(found)
 }
