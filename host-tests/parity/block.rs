@@ -25,7 +25,7 @@ fn summed_anew(name: &'static str, window: u16, flat: [f64; 2]) {
 fn agrees(name: &'static str, law: &impl Law, flat: [f64; 2], growth: f64) {
     let window = law.window();
     on_all(
-        || Parity::new(name, flat, growth),
+        |_| Parity::new(name, flat, growth),
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);

@@ -41,7 +41,9 @@ impl Adskalman {
     pub fn update(&mut self, o: &Observation) -> Impedance {
         let h = RowVector2::new(o.penetration, o.rate);
         let row = Row { h, transposed: h.transpose(), noise: Matrix1::new(FORGETTING) };
-        if let Ok(next) = row.update(&self.0, &Vector1::new(o.force), CovarianceUpdateMethod::OptimalKalman) {
+        if let Ok(next) =
+            row.update(&self.0, &Vector1::new(o.force), CovarianceUpdateMethod::OptimalKalmanForcedSymmetric)
+        {
             self.0 = StateAndCovariance::new(*next.state(), next.covariance() / FORGETTING);
         }
         let theta = self.0.state();
