@@ -40,7 +40,11 @@ fn every_update_is_counted_twice_alike_and_costs_what_its_budget_says() {
         assert!(long < 1.1 * short, "{name}: {long} instructions at 300 samples, {short} at 50");
     }
     for f in &profile.figures {
-        let name = &f.name;
+        let (name, json) = (&f.name, serde_json::to_value(f).expect("JSON"));
+        for key in ["name", "window", "instructions_mean", "instructions_worst", "cycles_lo", "cycles_hi"] {
+            assert!(json.get(key).is_some(), "{name}: no {key} in {json}");
+        }
+        assert!(json["stack_bytes"].is_u64() && json["state_bytes"].is_u64(), "{name}: {json}");
         assert!(f.cycles_lo <= f.cycles_hi && f.worst_cycles_lo <= f.worst_cycles_hi, "{name}");
         assert!(f64::from(f.cycles_lo) >= 0.9 * f.instructions_mean, "{name}: less than a cycle an instruction");
         assert!(f.stack_painted_bytes <= f.stack_bytes + 8, "{name}: more stack was seen than the code can use");

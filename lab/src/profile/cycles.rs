@@ -45,9 +45,7 @@ pub fn cost(instruction: &Instruction) -> Cost {
     let starts = |any: &[&str]| any.iter().any(|prefix| name.starts_with(prefix));
     if starts(&["ldm", "stm", "push", "pop", "vldm", "vstm", "vpush", "vpop"]) {
         memory([1 + words; 2], 1)
-    } else if starts(&["ldrd", "strd"]) {
-        memory([3; 2], 1)
-    } else if starts(&["vldr", "vstr"]) && instruction.operands.starts_with('d') {
+    } else if starts(&["ldrd", "strd"]) || starts(&["vldr", "vstr"]) && instruction.operands.starts_with('d') {
         memory([3; 2], 1)
     } else if starts(&["ldr", "vldr"]) {
         memory([2; 2], 1)

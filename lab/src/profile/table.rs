@@ -13,7 +13,7 @@ pub const NO_BOARD: &str =
 pub fn text(all: &[Figures], passes: usize) -> String {
     let mut text = format!(
         "{NO_BOARD}\nTwo counts, by a plugin of QEMU and by its clock, agree on all {passes} passes.\n\n\
-         {:<18}{:>7}{:>9}{:>8}{:>8}{:>13}{:>13}{:>7}{:>7}{:>9}{:>8}{:>9}{:>11}\n",
+         {:<18}{:>7}{:>9}{:>8}{:>8}{:>13}{:>13}{:>7}{:>7}{:>11}{:>8}{:>9}{:>11}\n",
         "update",
         "window",
         "instr",
@@ -33,7 +33,7 @@ pub fn text(all: &[Figures], passes: usize) -> String {
         // Writing to a string does not fail.
         let _ = writeln!(
             text,
-            "{:<18}{window:>7}{:>9.1}{:>8}{:>8}{:>13}{:>13}{:>7}{:>7}{:>9}{:>8}{:>9.2}{:>11.0}",
+            "{:<18}{window:>7}{:>9.1}{:>8}{:>8}{:>13}{:>13}{:>7}{:>7}{:>11}{:>8}{:>9.2}{:>11.0}",
             f.name,
             f.instructions_mean,
             f.instructions_worst,
