@@ -1,7 +1,7 @@
 //! A plugin of QEMU (interface version 1) that counts every instruction between two addresses of the image.
 //!
 //! Arguments: `begin` and `end`, the addresses of the region's first instruction and of the first behind it; `case`, an address
-//! that is passed where another estimator begins; `costs`, a file of what each instruction costs ([`costs`]); `out`, where
+//! that is passed where another estimator begins; `costs`, a file of what each instruction costs; `out`, where
 //! the counts go. For each pass through the region the plugin writes `pass INSTRUCTIONS LO HI`, for each estimator
 //! `case`, and behind it `at ADDRESS TIMES` for each instruction that was executed.
 
