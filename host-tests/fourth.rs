@@ -2,7 +2,8 @@
 
 use crate::reference;
 use crate::simulator::Noise;
-use palpate::{BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Impedance, Law, Observation, Recent};
+use palpate::direct::{BlockLeastMeanFourth, BlockLeastSquares};
+use palpate::{BlockConfig, Direction, Impedance, Law, Observation, Recent};
 
 const K: f64 = 300.0;
 const B: f64 = 5.0;

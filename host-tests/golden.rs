@@ -3,8 +3,8 @@
 use crate::reference::{self, Prior, Row, Theta};
 use crate::tolerance::{Ledger, close};
 use palpate::{
-    BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Ewrls, EwrlsConfig, FrontEnd, FrontEndConfig,
-    FrontEndState, Impedance, Law, Observation, Recent, Sample,
+    BlockConfig, BlockLeastSquares, Direction, Ewrls, EwrlsConfig, FrontEnd, FrontEndConfig, FrontEndState, Impedance,
+    Law, Observation, Recent, Sample, direct,
 };
 use std::path::Path;
 
@@ -128,7 +128,8 @@ fn the_low_pass_is_that_of_scipy() {
 fn one_step_of_mean_fourth_is_that_of_numpy_and_scipy() {
     let (search, contact) = (Table::read("line_search.csv"), Table::read("contact.csv"));
     let (rows, observations) = (contact.rows(), contact.observations());
-    let law = BlockLeastMeanFourth::new(BlockConfig::of(300), Direction::SteepestDescent).expect("sound settings");
+    let law =
+        direct::BlockLeastMeanFourth::new(BlockConfig::of(300), Direction::SteepestDescent).expect("sound settings");
     let mut errors = Ledger::default();
     for record in &search.records {
         let &[first, length, k0, b0, u_k, u_b, .., root, minimiser, whole_k, whole_b] = record.as_slice() else {

@@ -11,5 +11,6 @@ mod recordings;
 mod recovery;
 mod reference;
 mod rig;
+mod running;
 mod simulator;
 mod tolerance;

@@ -1,13 +1,13 @@
-//! What the block laws share: the window's sums about the present estimate.
+//! What the block laws share: settings, state, and the outcome of an update.
 
 use crate::confidence::Confidence;
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_not_negative};
 use crate::flags::Flags;
 use crate::law::Law;
-use crate::math::larger;
+use crate::memory::{Memory, Moments};
 use crate::step::Step;
-use crate::sym2::Sym2;
+use crate::sums::Solution;
 use crate::window::Recent;
 use serde::{Deserialize, Serialize};
 
@@ -52,92 +52,12 @@ impl BlockConfig {
     }
 }
 
-/// State of a block law: the window holds all the rest.
+/// State of a block law: the estimate, and what is remembered of the window beside its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BlockState {
+pub struct BlockState<M> {
     /// K and B, internal units.
     pub estimate: Impedance,
-}
-
-/// Sums over a window of regressors and of the misfit `e = F - phi' theta` of the present estimate. Taken about an
-/// estimate that is near, they lose less to rounding than sums of raw force.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sums {
-    pub samples: f32,
-    pub regressors: Sym2,
-    pub regressor: Impedance,
-    pub misfit: Impedance,
-    pub misfit_energy: f32,
-    pub largest_misfit: f32,
-}
-
-impl Sums {
-    pub fn over(recent: Recent<'_>, about: Impedance) -> Self {
-        let mut s = Self { samples: recent.len() as f32, ..Self::default() };
-        recent.for_each(|o| {
-            let (x, v, e) = (o.penetration, o.rate, o.misfit(about));
-            s.regressors = s.regressors.plus_outer(1.0, x, v);
-            s.regressor.stiffness += x;
-            s.regressor.damping += v;
-            s.misfit.stiffness += x * e;
-            s.misfit.damping += v * e;
-            s.misfit_energy += e * e;
-            s.largest_misfit = larger(e.abs(), s.largest_misfit);
-        });
-        s
-    }
-}
-
-/// The least-squares solution of a window, as a move from the estimate that the sums were taken about.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solution {
-    pub correction: Impedance,
-    pub inverse: Sym2,
-    pub flags: Flags,
-}
-
-impl Solution {
-    /// Both where the tool moves and the columns are independent, K alone where they are in line or it holds still,
-    /// neither where it is not in the surface.
-    pub fn of(sums: &Sums, config: &BlockConfig) -> Self {
-        let moving = sums.regressors.vv > sums.samples * (config.rate_floor * config.rate_floor);
-        if let Some(inverse) = sums.regressors.invert(config.independence_floor).filter(|_| moving) {
-            let correction = inverse.times(sums.misfit);
-            if correction.is_finite() {
-                return Self { correction, inverse, flags: Flags::empty() };
-            }
-        }
-        let stiffness = sums.misfit.stiffness / sums.regressors.xx;
-        if sums.regressors.xx > 0.0 && stiffness.is_finite() {
-            return Self {
-                correction: Impedance { stiffness, damping: 0.0 },
-                inverse: Sym2 { xx: 1.0 / sums.regressors.xx, ..Sym2::UNKNOWN },
-                flags: Flags::DAMPING_HELD,
-            };
-        }
-        Self { correction: Impedance::ZERO, inverse: Sym2::UNKNOWN, flags: Flags::HELD }
-    }
-
-    /// Mean square of the residual that the solution leaves.
-    pub fn residual_variance(&self, sums: &Sums) -> f32 {
-        let explained =
-            self.correction.stiffness * sums.misfit.stiffness + self.correction.damping * sums.misfit.damping;
-        let left = sums.misfit_energy - explained;
-        if left > 0.0 { left / larger(sums.samples - 2.0, 1.0) } else { 0.0 }
-    }
-}
-
-impl BlockState {
-    /// Moves the estimate by `step`, or not at all where that would leave the finite numbers; what was done.
-    fn move_by(&mut self, step: Impedance) -> Impedance {
-        let next = self.estimate.moved(1.0, step);
-        if next.is_finite() {
-            self.estimate = next;
-            step
-        } else {
-            Impedance::ZERO
-        }
-    }
+    pub(crate) memory: M,
 }
 
 /// What a law makes of the window's sums.
@@ -153,28 +73,33 @@ pub struct Move {
 
 /// A window as a criterion sees it.
 #[derive(Debug, Clone, Copy)]
-pub struct View<'a> {
+pub struct View<'a, M: Memory> {
     pub config: &'a BlockConfig,
     pub recent: Recent<'a>,
-    /// The estimate that `sums` are taken about.
+    pub memory: &'a M,
+    /// The estimate that `local` is summed about.
     pub estimate: Impedance,
-    pub sums: Sums,
+    pub local: M::Local,
     /// What least squares would do.
     pub solution: Solution,
 }
 
-impl<'a> View<'a> {
-    pub fn of(config: &'a BlockConfig, recent: Recent<'a>, estimate: Impedance) -> Self {
-        let sums = Sums::over(recent, estimate);
-        let solution = Solution::of(&sums, config);
-        Self { config, recent, estimate, sums, solution }
+impl<'a, M: Memory> View<'a, M> {
+    #[inline(always)]
+    pub fn of(config: &'a BlockConfig, memory: &'a M, recent: Recent<'a>, estimate: Impedance) -> Self {
+        let local = memory.local(recent, estimate);
+        let solution = Solution::of(local.second(), config);
+        Self { config, recent, memory, estimate, local, solution }
     }
 }
 
 /// What one block law has of its own.
 pub trait Criterion {
+    /// What it remembers of the window.
+    type Memory: Memory;
+
     /// The move from the estimate of `view`.
-    fn advance(&self, view: &View<'_>) -> Move;
+    fn advance(&self, view: &View<'_, Self::Memory>) -> Move;
 }
 
 /// A law on a sliding window: what all of them share, about the criterion of each.
@@ -184,34 +109,59 @@ pub struct BlockLaw<C> {
     pub(crate) criterion: C,
 }
 
-impl<C: Criterion> Law for BlockLaw<C> {
-    type State = BlockState;
+impl<C: Criterion> BlockLaw<C> {
+    /// Moves the estimate by the newest of `recent`, and nothing else: no interval, fill or excitation. The state is that of
+    /// [`Law::update`], and either may follow on the other. Returns the innovation, in internal units of force.
+    pub fn learn(&self, state: &mut BlockState<C::Memory>, recent: Recent<'_>) -> f32 {
+        let recent = recent.last(self.window());
+        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
+        state.memory.follow(&self.config, recent, state.estimate);
+        if recent.len() >= usize::from(self.config.minimum_fill) {
+            let view = View::of(&self.config, &state.memory, recent, state.estimate);
+            let moved = state.estimate.moved(1.0, self.criterion.advance(&view).step);
+            if moved.is_finite() {
+                state.estimate = moved;
+            }
+        }
+        innovation
+    }
+}
 
-    fn start(&self) -> BlockState {
+impl<C: Criterion> Law for BlockLaw<C> {
+    type State = BlockState<C::Memory>;
+
+    fn start(&self) -> Self::State {
         BlockState::default()
     }
 
-    /// The window is all the memory there is, and whoever holds it clears it.
-    fn forget(&self, _: &mut BlockState) {}
+    /// Whoever holds the window clears it; a window that still holds samples at the next update is summed anew once.
+    fn forget(&self, state: &mut Self::State) {
+        state.memory = C::Memory::default();
+    }
 
     fn window(&self) -> usize {
         usize::from(self.config.window)
     }
 
-    fn update(&self, state: &mut BlockState, recent: Recent<'_>) -> Step {
+    fn update(&self, state: &mut Self::State, recent: Recent<'_>) -> Step {
         let recent = recent.last(self.window());
         let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
         let fill = recent.len() as f32 / f32::from(self.config.window);
+        state.memory.follow(&self.config, recent, state.estimate);
         if recent.len() < usize::from(self.config.minimum_fill) {
             let (confidence, excitation, flags) = (Confidence::NONE, 0.0, Flags::TOO_FEW);
             return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
         }
-        let view = View::of(&self.config, recent, state.estimate);
+        let view = View::of(&self.config, &state.memory, recent, state.estimate);
         let Move { step, noise_variance, flags } = self.criterion.advance(&view);
-        let View { sums, solution, .. } = view;
-        let taken = state.move_by(step);
+        let (sums, solution) = (view.local.second(), &view.solution);
+        let moved = state.estimate.moved(1.0, step);
+        // Not at all where that would leave the finite numbers.
+        let taken = if moved.is_finite() { step } else { Impedance::ZERO };
+        let estimate = if moved.is_finite() { moved } else { state.estimate };
+        state.estimate = estimate;
         Step {
-            estimate: state.estimate,
+            estimate,
             innovation,
             confidence: Confidence {
                 noise: solution.inverse.scaled(noise_variance),

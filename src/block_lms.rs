@@ -1,34 +1,43 @@
 //! Block least mean square (BLMS): one step of steepest descent a sample, with the closed-form step size.
 
-use crate::block::{BlockConfig, BlockLaw, Criterion, Move, Sums, View};
+use core::marker::PhantomData;
+
+use crate::block::{BlockConfig, BlockLaw, Criterion, Move, View};
 use crate::contact::Impedance;
 use crate::error::ConfigError;
 use crate::flags::Flags;
 use crate::math::larger;
+use crate::memory::{Memory, Moments};
+use crate::running::Running;
+use crate::sums::Sums;
 
 /// `theta += step u` along `u = -g/|g|`, `g = -sum phi e`, where the step minimises `sum (e - step phi'u)^2` over the
 /// window: `step = sum p e / sum p^2` with `p = phi'u`.
 ///
 /// Without the length of g, and in one pass, that is `theta += (d'd / d'Rd) d` with `d = sum phi e`, `R = sum phi phi'`.
-pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare>;
+///
+/// An update costs the same at any window.
+pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<Running<Sums>>>;
 
 /// `sum (F - phi' theta)^2`, descended by one step a sample.
 #[derive(Debug, Clone, Copy)]
-pub struct LeastMeanSquare;
+pub struct LeastMeanSquare<M>(PhantomData<M>);
 
-impl BlockLeastMeanSquare {
+impl<M: Memory> BlockLaw<LeastMeanSquare<M>> {
     /// Checks the settings.
     ///
     /// # Errors
     /// The first field that is out of range.
     pub fn new(config: BlockConfig) -> Result<Self, ConfigError> {
-        Ok(Self { config: config.check()?, criterion: LeastMeanSquare })
+        Ok(Self { config: config.check()?, criterion: LeastMeanSquare(PhantomData) })
     }
 }
 
-impl Criterion for LeastMeanSquare {
-    fn advance(&self, view: &View<'_>) -> Move {
-        let (sums, solution) = (&view.sums, &view.solution);
+impl<M: Memory> Criterion for LeastMeanSquare<M> {
+    type Memory = M;
+
+    fn advance(&self, view: &View<'_, M>) -> Move {
+        let (sums, solution) = (view.local.second(), &view.solution);
         Move {
             step: steepest_step(sums),
             noise_variance: solution.residual_variance(sums),

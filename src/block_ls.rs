@@ -1,31 +1,40 @@
 //! Block least squares (BLS) over a sliding window.
 
+use core::marker::PhantomData;
+
 use crate::block::{BlockConfig, BlockLaw, Criterion, Move, View};
 use crate::error::ConfigError;
+use crate::memory::{Memory, Moments};
+use crate::running::Running;
+use crate::sums::Sums;
 
 /// `theta = (sum phi phi')^-1 sum phi F` over the window (eq. 5-6), by the closed 2x2 inverse.
 ///
 /// The sums are taken about the estimate before and solved for its correction, which is the same solution with less
 /// rounding. Where penetration and rate are in line, or the tool holds still, K alone is solved for and B is held.
-pub type BlockLeastSquares = BlockLaw<LeastSquares>;
+///
+/// An update costs the same at any window.
+pub type BlockLeastSquares = BlockLaw<LeastSquares<Running<Sums>>>;
 
 /// `sum (F - phi' theta)^2`, solved outright.
 #[derive(Debug, Clone, Copy)]
-pub struct LeastSquares;
+pub struct LeastSquares<M>(PhantomData<M>);
 
-impl BlockLeastSquares {
+impl<M: Memory> BlockLaw<LeastSquares<M>> {
     /// Checks the settings.
     ///
     /// # Errors
     /// The first field that is out of range.
     pub fn new(config: BlockConfig) -> Result<Self, ConfigError> {
-        Ok(Self { config: config.check()?, criterion: LeastSquares })
+        Ok(Self { config: config.check()?, criterion: LeastSquares(PhantomData) })
     }
 }
 
-impl Criterion for LeastSquares {
-    fn advance(&self, view: &View<'_>) -> Move {
-        let (sums, solution) = (&view.sums, &view.solution);
+impl<M: Memory> Criterion for LeastSquares<M> {
+    type Memory = M;
+
+    fn advance(&self, view: &View<'_, M>) -> Move {
+        let (sums, solution) = (view.local.second(), &view.solution);
         Move { step: solution.correction, noise_variance: solution.residual_variance(sums), flags: solution.flags }
     }
 }

@@ -62,8 +62,8 @@ impl Impedance {
         }
     }
 
-    /// Whether both are finite.
+    /// Whether both are finite, and their sum: one look in the place of two.
     pub fn is_finite(self) -> bool {
-        self.stiffness.is_finite() && self.damping.is_finite()
+        (self.stiffness + self.damping).is_finite()
     }
 }

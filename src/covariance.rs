@@ -61,8 +61,8 @@ impl Covariance {
         Sym2 { xx: self.d1 + self.u * xv, xv, vv: self.d2 }
     }
 
-    /// Whether it is a covariance: finite, and positive on both factors.
+    /// Whether it is a covariance: finite, as their sum tells, and positive on both factors.
     pub fn is_sound(&self) -> bool {
-        self.d1.is_finite() && self.d2.is_finite() && self.u.is_finite() && self.d1 > 0.0 && self.d2 > 0.0
+        (self.d1 + self.d2 + self.u).is_finite() && self.d1 > 0.0 && self.d2 > 0.0
     }
 }

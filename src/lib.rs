@@ -35,7 +35,8 @@
 //! | [`Sample`], [`Impedance`] | the model, its units and signs |
 //! | [`FrontEnd`] | penetration, velocity, contact gate; rejection of bad samples |
 //! | [`Ewrls`], [`Sprls`], [`ResetRls`], [`Gradient`] | recursive laws |
-//! | [`BlockLeastSquares`], [`BlockLeastMeanSquare`], [`BlockLeastMeanFourth`] | laws on a window |
+//! | [`BlockLeastSquares`], [`BlockLeastMeanSquare`], [`BlockLeastMeanFourth`] | laws on a window, at the same cost whatever its length |
+//! | [`direct`] | the same, summed anew at every sample |
 //! | [`Estimate`], [`Flags`] | the answer and its quality |
 //! | [`Identifier`] | all of it for one law |
 //! | [`Bench`] | all laws side by side |
@@ -54,31 +55,37 @@ mod confidence;
 mod contact;
 mod covariance;
 pub mod cubic;
+pub mod direct;
+mod direct_lmf;
 mod error;
 mod estimate;
 mod ewrls;
 pub mod exchange;
 mod filter;
 mod flags;
+mod fourth;
 mod front_end;
 mod gate;
 mod gradient;
 mod identifier;
 mod law;
 pub mod math;
+mod memory;
 mod propagation;
 mod recursive;
 mod reset_rls;
+mod running;
 mod sprls;
 mod step;
 mod stream;
+mod sums;
 mod sym2;
 mod units;
 mod window;
 
 pub use bench::{BENCH_WINDOW, Bench, BenchConfig, BenchEstimates, Method, Methods};
 pub use block::{BlockConfig, BlockLaw, BlockState};
-pub use block_lmf::{BlockLeastMeanFourth, Direction, LineSearch};
+pub use block_lmf::{BlockLeastMeanFourth, Direction};
 pub use block_lms::BlockLeastMeanSquare;
 pub use block_ls::BlockLeastSquares;
 pub use confidence::Confidence;

@@ -72,15 +72,17 @@ impl Propagation {
         }
     }
 
+    /// By their sum, which is finite only where each is; and a sum beyond the range is as good as a sign of that.
     fn is_finite(&self) -> bool {
-        self.memory.iter().all(|row| row.is_finite())
-            && self.noise.is_finite()
-            && self.noise_gain.is_finite()
-            && self.offset_gain.is_finite()
-            && self.regressors.is_finite()
+        let [k, b] = self.memory;
+        let pairs = k.moved(1.0, b).moved(1.0, self.offset_gain);
+        let total = |m: Sym2| m.xx + m.xv + m.vv;
+        let sums = total(self.noise) + total(self.noise_gain) + total(self.regressors);
+        (pairs.stiffness + pairs.damping + sums).is_finite()
     }
 
     /// The confidence in `estimate`, which the updates have led to.
+    #[inline(always)]
     pub fn confidence(&self, estimate: Impedance) -> Confidence {
         let [k, b] = self.memory;
         // The error at the start is told from a noisy estimate, over I - M: so is its remainder.
@@ -116,6 +118,7 @@ impl Propagation {
     }
 
     /// The outcome of the update that has just advanced it and led to `estimate`.
+    #[inline(always)]
     pub(crate) fn step(&self, estimate: Impedance, innovation: f32, forgetting: f32, flags: Flags) -> Step {
         Step {
             estimate,

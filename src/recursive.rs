@@ -49,6 +49,7 @@ impl RecursiveState {
     }
 
     /// The outcome, told with the memory that `forgetting` gives.
+    #[inline(always)]
     pub(crate) fn step(
         &mut self,
         o: &Observation,

@@ -1,6 +1,6 @@
 //! Self-perturbing recursive least squares (SPRLS).
 
-use crate::contact::Impedance;
+use crate::contact::{Impedance, Observation};
 use crate::error::{ConfigError, require_not_negative};
 use crate::flags::Flags;
 use crate::law::Law;
@@ -82,6 +82,23 @@ impl Sprls {
 impl Sprls {
     fn from(&self, estimate: Impedance) -> SprlsState {
         SprlsState { recursion: RecursiveState::new(self.config.initial_covariance, estimate), innovation_before: 0.0 }
+    }
+}
+
+impl Sprls {
+    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::learn`].
+    pub fn learn(&self, state: &mut SprlsState, o: &Observation) -> f32 {
+        let innovation = o.misfit(state.recursion.estimate);
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe(o, 1.0);
+        let kick = self.kick(state.innovation_before);
+        if kick > 0.0 {
+            covariance.inflate(kick);
+        }
+        covariance.limit(self.config.covariance_limit);
+        state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
+        state.innovation_before = innovation;
+        innovation
     }
 }
 

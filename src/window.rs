@@ -99,6 +99,17 @@ impl<'a> Recent<'a> {
         self.newer.last().or(self.older.last()).copied()
     }
 
+    /// The oldest one.
+    pub fn oldest(&self) -> Option<Observation> {
+        self.older.first().or(self.newer.first()).copied()
+    }
+
+    /// The one `count` before the newest; the newest itself where that is zero.
+    pub fn before_newest(&self, count: usize) -> Option<Observation> {
+        let from_end = |run: &[Observation], count: usize| run.get(run.len().checked_sub(count + 1)?).copied();
+        from_end(self.newer, count).or_else(|| from_end(self.older, count.checked_sub(self.newer.len())?))
+    }
+
     /// Calls `visit` on each, oldest first.
     pub fn for_each(&self, mut visit: impl FnMut(&Observation)) {
         self.older.iter().for_each(&mut visit);
@@ -130,6 +141,12 @@ mod tests {
                 assert_eq!(forces(window.recent().last(count)), expected, "after {k}, last {count}");
             }
             assert_eq!(window.recent().newest().map(|o| o.force), Some(f32::from(k)));
+            let oldest = k.saturating_sub(4);
+            assert_eq!(window.recent().oldest().map(|o| o.force), Some(f32::from(oldest)));
+            for back in 0..8 {
+                let force = (back <= k - oldest).then(|| f32::from(k - back));
+                assert_eq!(window.recent().before_newest(back.into()).map(|o| o.force), force, "{back} before {k}");
+            }
         }
         window.clear();
         assert!(window.is_empty() && window.recent().is_empty());

@@ -4,7 +4,7 @@ use super::runner;
 use crate::reference::{self, Row, Theta};
 use crate::tolerance::close;
 use palpate::cubic::depressed_root;
-use palpate::{BlockConfig, BlockLeastMeanFourth, Direction, Impedance, Observation, Recent};
+use palpate::{BlockConfig, Direction, Impedance, Observation, Recent, direct};
 use proptest::collection::vec;
 
 const EPS: f64 = f32::EPSILON as f64;
@@ -21,7 +21,8 @@ fn coefficients(rows: &[Row], from: Theta, u: Theta) -> [f64; 4] {
 fn the_line_search_goes_down_and_has_exactly_one_real_root() {
     let row = (-0.02_f32..0.02, -0.2_f32..0.2, -5.0_f32..5.0);
     let input = (vec(row, 2..80), -900.0_f32..900.0, -20.0_f32..20.0);
-    let law = BlockLeastMeanFourth::new(BlockConfig::of(300), Direction::SteepestDescent).expect("sound settings");
+    let law =
+        direct::BlockLeastMeanFourth::new(BlockConfig::of(300), Direction::SteepestDescent).expect("sound settings");
     runner(500)
         .run(&input, |(rows, stiffness, damping)| {
             let single = |&(penetration, rate, force): &(f32, f32, f32)| Observation { penetration, rate, force };

@@ -98,7 +98,7 @@ fn samples_to_estimate_on_simulated_contacts() {
 fn samples_to_estimate_on_recorded_contacts() {
     let cases = Case::recorded();
     // A single holds the absolute position: 27 um of travel leave 6e-7 of 2.5 um of depth, and a rate one period worse.
-    let mut parity = Parity::new("matched, bls 50, whole way", [5e-5, 1e-3], 4.0);
+    let mut parity = Parity::new("matched, bls 50, whole way", [5e-5, 1e-3], 16.0);
     cases.iter().for_each(|case| samples_to_estimate(&mut parity, case, 50));
     if !cases.is_empty() {
         parity.conclude("recorded", 300);

@@ -119,9 +119,9 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Runs `experiment` on simulated and on recorded contacts, each with a ledger of its own.
-fn on_all(new: impl Fn() -> Parity, every: usize, experiment: impl Fn(&mut Parity, &str, &[Observation])) {
+fn on_all(new: impl Fn(&str) -> Parity, every: usize, experiment: impl Fn(&mut Parity, &str, &[Observation])) {
     for (kind, cases) in [("simulated", Case::simulated()), ("recorded", Case::recorded())] {
-        let mut parity = new();
+        let mut parity = new(kind);
         let mut observations = 0;
         for case in &cases {
             for contact in &case.contacts {

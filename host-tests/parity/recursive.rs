@@ -38,7 +38,7 @@ fn weighted_least_squares(name: &'static str, forgetting: f32, covariance: f32, 
     let law = Ewrls::new(config).expect("sound settings");
     let prior = Some(Prior { at: Theta::zeros(), covariance: covariance.into() });
     on_all(
-        || Parity::new(name, flat, 4.0),
+        |_| Parity::new(name, flat, 4.0),
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);
@@ -66,7 +66,7 @@ fn a_reset_makes_the_estimate_the_prior_of_the_next_batch() {
     let law = ResetRls::new(config).expect("sound settings");
     let interval = usize::from(config.reset_interval);
     on_all(
-        || Parity::new("reset_rls 300, P0 10", [5e-5, 5e-5], 4.0),
+        |_| Parity::new("reset_rls 300, P0 10", [5e-5, 5e-5], 4.0),
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);
@@ -88,7 +88,7 @@ fn self_perturbation_in_information_form() {
     let config = SprlsConfig { covariance_limit: NO_LIMIT, ..SprlsConfig::default() };
     let law = Sprls::new(config).expect("sound settings");
     on_all(
-        || Parity::new("sprls 100, 2", [2e-5, 5e-5], 4.0),
+        |_| Parity::new("sprls 100, 2", [2e-5, 5e-5], 4.0),
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);
@@ -123,7 +123,7 @@ fn the_gradient_law_is_the_minimiser_that_it_claims() {
     let law = Gradient::new(config).expect("sound settings");
     let gains = Theta::new(config.stiffness_gain.into(), config.damping_gain.into());
     on_all(
-        || Parity::new("gradient 100, 1", [2e-5, 2e-5], 0.0),
+        |_| Parity::new("gradient 100, 1", [2e-5, 2e-5], 0.0),
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);

@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand};
 use crate::catalogue::{self, EffectsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
+use crate::profile::{self, ProfileArgs};
 use crate::replay::{self, ReplayArgs};
 use crate::simulate::{self, SimulateArgs};
 
@@ -26,6 +27,8 @@ enum Command {
     Replay(ReplayArgs),
     /// Make a recording from a rig file
     Simulate(SimulateArgs),
+    /// Count what each estimator costs on the device
+    Profile(ProfileArgs),
     /// List the physics that it knows beyond spring and damper
     Effects(EffectsArgs),
 }
@@ -37,6 +40,7 @@ pub fn run() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
+        Command::Profile(args) => profile::run(&args),
         Command::Effects(args) => catalogue::run(&args),
     };
     match done {

@@ -30,7 +30,7 @@ impl Device {
     /// # Errors
     /// A tool is missing (as [`tools::MissingTools`]), the sources are not there, or the build fails.
     pub fn prepare(leave: Leave) -> Result<Self> {
-        Ok(Self { qemu: tools::for_the_device(leave)?, image: build("replay")? })
+        Ok(Self { qemu: tools::for_the_device(leave)?, image: build("palpate", "replay")? })
     }
 
     /// Feeds `samples` to the image and hands each outcome to `take`, in order; `progress` is told meanwhile how many are
@@ -130,11 +130,22 @@ pub fn project() -> Result<PathBuf> {
     found.context("the device's image is built from source: run this inside the project's folder")
 }
 
-/// Builds an image by its name and finds the file that cargo made.
-fn build(name: &str) -> Result<PathBuf> {
+/// Builds an image, an example of `package`, by its name and finds the file that cargo made.
+pub(crate) fn build(package: &str, name: &str) -> Result<PathBuf> {
+    let target = ["--package", package, "--example", name, "--target", tools::TARGET];
+    cargo(&target, name, |message| message["executable"].as_str().map(PathBuf::from))
+}
+
+/// Runs `cargo build --release` with `arguments` and finds the file that `file` takes from the message about `name`.
+pub(crate) fn cargo(
+    arguments: &[&str],
+    name: &str,
+    file: impl Fn(&serde_json::Value) -> Option<PathBuf>,
+) -> Result<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
-        .args(["build", "--release", "--quiet", "--package", "palpate", "--example", name, "--target", tools::TARGET])
+        .args(["build", "--release", "--quiet"])
+        .args(arguments)
         .args(["--message-format", "json-render-diagnostics"])
         .current_dir(project()?)
         // These replace the flags of .cargo/config.toml, the link script among them.
@@ -144,11 +155,9 @@ fn build(name: &str) -> Result<PathBuf> {
         .stderr(Stdio::inherit())
         .output()
         .context("cannot run cargo")?;
-    ensure!(output.status.success(), "the image `{name}` does not build (see above)");
+    ensure!(output.status.success(), "`{name}` does not build (see above)");
     let messages = String::from_utf8_lossy(&output.stdout);
     let artifacts = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
-    let executable = artifacts
-        .filter(|message| message["target"]["name"] == name)
-        .find_map(|message| message["executable"].as_str().map(PathBuf::from));
-    executable.with_context(|| format!("cargo built `{name}` and named no file"))
+    let found = artifacts.filter(|message| message["target"]["name"] == name).find_map(|message| file(&message));
+    found.with_context(|| format!("cargo built `{name}` and named no file"))
 }

@@ -10,6 +10,7 @@ pub mod error;
 pub mod outfile;
 pub mod page;
 pub mod plant;
+pub mod profile;
 pub mod recording;
 pub mod recordings;
 pub mod reference;

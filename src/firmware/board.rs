@@ -7,9 +7,6 @@ use stm32f4xx_hal::rcc::Config;
 /// Core clock of the image, in Hz.
 pub const CLOCK_HZ: u32 = 168_000_000;
 
-/// Ticks of the interrupt in a second.
-pub const TICK_HZ: u32 = 1_000;
-
 /// Brings the core to [`CLOCK_HZ`] from the internal oscillator. Under QEMU there is nothing to do, and the wait for the
 /// PLL would never end; QEMU is told by a debug unit that reads zero.
 pub fn start_clock(peripherals: pac::Peripherals) -> &'static str {

@@ -15,15 +15,13 @@ use semihosting::fs::File;
 use semihosting::io::{self, Read, Write};
 use stm32f4xx_hal::pac;
 
-use super::board::{CLOCK_HZ, TICK_HZ, start_clock};
-use super::tick::{Tick, counters};
+use super::board::{CLOCK_HZ, start_clock};
+use super::tick::{OUTCOMES, QUEUE, Tick, counters};
 
+/// Ticks of the interrupt in a second.
+const TICK_HZ: u32 = 1_000;
 /// Samples a block: one semihosting call stops the core for about as long whatever it carries.
 const BLOCK: usize = 64;
-/// One place of a queue stays empty, so this holds two blocks.
-const QUEUE: usize = 2 * BLOCK + 1;
-/// Outcomes that wait for the idle loop, each 292 bytes.
-const OUTCOMES: usize = BLOCK + 1;
 
 /// Why the image gave up, told on the host's standard error.
 type Fault = &'static str;
@@ -100,7 +98,7 @@ fn replay(mut samples: Source, mut records: Sink) -> Result<(), Fault> {
 
 struct Source {
     file: File,
-    to_tick: Producer<'static, Sample>,
+    to_tick: Producer<'static, Sample, QUEUE>,
     ended: bool,
 }
 
@@ -140,7 +138,7 @@ fn read_up_to(file: &mut File, bytes: &mut [u8]) -> io::Result<usize> {
 
 struct Sink {
     file: File,
-    from_tick: Consumer<'static, Outcome>,
+    from_tick: Consumer<'static, Outcome, OUTCOMES>,
     methods: Methods,
     written: u32,
 }

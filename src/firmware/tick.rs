@@ -9,14 +9,19 @@ use heapless::spsc::{Consumer, Producer};
 use palpate::exchange::{Counters, Outcome};
 use palpate::{Bench, Sample};
 
+/// Samples that wait for the interrupt. One place of a queue stays empty, so this holds two blocks of the idle loop.
+pub const QUEUE: usize = 129;
+/// Outcomes that wait for the idle loop, each 292 bytes.
+pub const OUTCOMES: usize = 65;
+
 /// What the interrupt owns.
 pub struct Tick {
     /// The estimators.
     pub bench: Bench,
     /// Samples from the idle loop.
-    pub input: Consumer<'static, Sample>,
+    pub input: Consumer<'static, Sample, QUEUE>,
     /// Outcomes to the idle loop.
-    pub output: Producer<'static, Outcome>,
+    pub output: Producer<'static, Outcome, OUTCOMES>,
 }
 
 static TICK: AtomicPtr<Tick> = AtomicPtr::new(ptr::null_mut());

@@ -81,8 +81,20 @@ fn checks(rustfmt: bool, clippy: bool, target: bool, device: bool) -> Vec<Check>
         checks.push(check("lints", &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     }
     if clippy && target {
-        let image =
-            ["clippy", "--package", "palpate", "--lib", "--examples", "--target", TARGET, "--", "-D", "warnings"];
+        let image = [
+            "clippy",
+            "--package",
+            "palpate",
+            "--package",
+            "palpate-rivals",
+            "--lib",
+            "--examples",
+            "--target",
+            TARGET,
+            "--",
+            "-D",
+            "warnings",
+        ];
         checks.push(check("lints of the image", &image));
     }
     let documentation = check("documentation", &["doc", "--workspace", "--no-deps", "--document-private-items"]);

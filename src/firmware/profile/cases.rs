@@ -1,0 +1,220 @@
+//! What is measured: the update of every law, with windows of 10, 50 and 300, and the whole way from a sample to estimates.
+
+use core::hint::black_box;
+use core::mem::{MaybeUninit, size_of};
+
+use palpate::{
+    BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares, ConfigError, Direction, Ewrls,
+    Gradient, Identifier, Law, Observation, Recent, ResetRls, Sample, Sprls, Step, Stream, Tracker, direct,
+};
+
+use super::gauge::{Gauge, Work};
+use super::input::{Fault, Recording};
+
+/// Capacity of every ring: the longest window that is measured.
+const RING: usize = 300;
+
+fn unsound(_: ConfigError) -> Fault {
+    "the settings are out of range"
+}
+
+/// One update of a law.
+struct Update<'a, L: Law> {
+    law: &'a L,
+    state: &'a mut L::State,
+    recent: Recent<'a>,
+    step: MaybeUninit<Step>,
+}
+
+impl<L: Law> Work for Update<'_, L> {
+    fn work(&mut self) {
+        self.step.write(self.law.update(self.state, self.recent));
+    }
+}
+
+/// One update without what tells of its quality.
+struct Learn<F> {
+    learn: F,
+}
+
+impl<F: FnMut()> Work for Learn<F> {
+    fn work(&mut self) {
+        (self.learn)();
+    }
+}
+
+/// Nothing, for what the counting itself takes.
+struct Nothing;
+
+impl Work for Nothing {
+    fn work(&mut self) {}
+}
+
+/// One sample through something that takes samples.
+struct Take<F>(F, Sample);
+
+impl<F: FnMut(Sample)> Work for Take<F> {
+    fn work(&mut self) {
+        (self.0)(self.1);
+    }
+}
+
+/// Measures everything.
+pub fn run(recording: &Recording, mut gauge: Gauge) -> Result<(), Fault> {
+    gauge.case("nothing", 0, 0, 0)?;
+    for _ in 0..8 {
+        gauge.pass(&mut Nothing)?;
+    }
+    let config = &recording.config;
+    let mut laws = Laws { recording, gauge: &mut gauge };
+    laws.law("rls", 0, Ewrls::new(config.rls))?;
+    laws.law("ewrls", 0, Ewrls::new(config.ewrls))?;
+    laws.law("sprls", 0, Sprls::new(config.sprls))?;
+    laws.law("reset_rls", 0, ResetRls::new(config.reset_rls))?;
+    laws.law("gradient", 0, Gradient::new(config.gradient))?;
+    for window in [10, 50, 300] {
+        let block = BlockConfig::of(window);
+        laws.law("bls", window, BlockLeastSquares::new(block))?;
+        laws.law("blms", window, BlockLeastMeanSquare::new(block))?;
+        laws.law("blmf", window, BlockLeastMeanFourth::new(block, Direction::SteepestDescent))?;
+        laws.law("newton_blmf", window, BlockLeastMeanFourth::new(block, Direction::Newton))?;
+        laws.law("bls_anew", window, direct::BlockLeastSquares::new(block))?;
+        laws.law("blmf_anew", window, direct::BlockLeastMeanFourth::new(block, Direction::SteepestDescent))?;
+    }
+    laws.estimate_alone()?;
+    samples_to_estimates(recording, &mut gauge)
+}
+
+struct Laws<'a> {
+    recording: &'a Recording,
+    gauge: &'a mut Gauge,
+}
+
+impl Laws<'_> {
+    /// Every update of one law over the recording, in contact, as a `Tracker` would call it.
+    fn law<L: Law>(&mut self, name: &str, window: u16, law: Result<L, ConfigError>) -> Result<(), Fault> {
+        let law = law.map_err(unsound)?;
+        let ring = usize::from(window) * size_of::<Observation>();
+        self.gauge.case(name, window, size_of::<L::State>(), ring)?;
+        let mut stream = Stream::<RING>::new(self.recording.config.stream).map_err(unsound)?;
+        let mut state = law.start();
+        for &sample in self.recording.samples {
+            let event = stream.update(sample).map_err(|_| "a sample was rejected")?;
+            if event.lost {
+                state = law.start();
+            }
+            if event.reading.contact && !event.reading.restarted {
+                let recent = stream.recent();
+                let mut update =
+                    Update { law: black_box(&law), state: &mut state, recent, step: MaybeUninit::uninit() };
+                self.gauge.pass(&mut update)?;
+                black_box(&update.step);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Laws<'_> {
+    /// What moves the estimate, without the interval and the rest that tells of its quality: the job that others do, too.
+    fn estimate_alone(&mut self) -> Result<(), Fault> {
+        let config = &self.recording.config;
+        let ewrls = Ewrls::new(config.ewrls).map_err(unsound)?;
+        self.learn("ewrls_alone", 0, &ewrls, |state, recent| {
+            ewrls.learn(state, &recent.newest().unwrap_or_default());
+        })?;
+        let sprls = Sprls::new(config.sprls).map_err(unsound)?;
+        self.learn("sprls_alone", 0, &sprls, |state, recent| {
+            sprls.learn(state, &recent.newest().unwrap_or_default());
+        })?;
+        let block = BlockConfig::of(300);
+        let bls = BlockLeastSquares::new(block).map_err(unsound)?;
+        self.learn("bls_alone", 300, &bls, |state, recent| {
+            bls.learn(state, recent);
+        })?;
+        let blmf = BlockLeastMeanFourth::new(block, Direction::SteepestDescent).map_err(unsound)?;
+        self.learn("blmf_alone", 300, &blmf, |state, recent| {
+            blmf.learn(state, recent);
+        })
+    }
+
+    fn learn<L: Law>(
+        &mut self,
+        name: &str,
+        window: u16,
+        law: &L,
+        mut learn: impl FnMut(&mut L::State, Recent<'_>),
+    ) -> Result<(), Fault> {
+        let ring = usize::from(window) * size_of::<Observation>();
+        self.gauge.case(name, window, size_of::<L::State>(), ring)?;
+        let mut stream = Stream::<RING>::new(self.recording.config.stream).map_err(unsound)?;
+        let mut state = law.start();
+        for &sample in self.recording.samples {
+            let event = stream.update(sample).map_err(|_| "a sample was rejected")?;
+            if event.lost {
+                state = law.start();
+            }
+            if event.reading.contact && !event.reading.restarted {
+                let recent = stream.recent();
+                self.gauge.pass(&mut Learn { learn: || learn(black_box(&mut state), recent) })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The whole way: filter, gate, law, interval.
+fn samples_to_estimates(recording: &Recording, gauge: &mut Gauge) -> Result<(), Fault> {
+    let config = &recording.config;
+    let stream = config.stream;
+    let block = BlockConfig::of(300);
+    let fourth = || BlockLeastMeanFourth::new(block, Direction::SteepestDescent).map_err(unsound);
+    let mut front = Stream::<1>::new(stream).map_err(unsound)?;
+    whole(recording, gauge, "front_end", 0, size_of::<Stream<1>>(), |sample| {
+        black_box(front.update(sample).is_ok());
+    })?;
+    let mut ewrls = Identifier::<_, 1>::new(stream, Ewrls::new(config.ewrls).map_err(unsound)?).map_err(unsound)?;
+    whole(recording, gauge, "identify_ewrls", 0, size_of_val(&ewrls), |sample| {
+        black_box(ewrls.update(sample).is_ok());
+    })?;
+    let bls = BlockLeastSquares::new(block).map_err(unsound)?;
+    let mut bls = Identifier::<_, RING>::new(stream, bls).map_err(unsound)?;
+    whole(recording, gauge, "identify_bls", 300, size_of_val(&bls), |sample| {
+        black_box(bls.update(sample).is_ok());
+    })?;
+    let mut blmf = Identifier::<_, RING>::new(stream, fourth()?).map_err(unsound)?;
+    whole(recording, gauge, "identify_blmf", 300, size_of_val(&blmf), |sample| {
+        black_box(blmf.update(sample).is_ok());
+    })?;
+    let mut four = (
+        Stream::<RING>::new(stream).map_err(unsound)?,
+        Tracker::new(Ewrls::new(config.ewrls).map_err(unsound)?),
+        Tracker::new(Sprls::new(config.sprls).map_err(unsound)?),
+        Tracker::new(BlockLeastSquares::new(block).map_err(unsound)?),
+        Tracker::new(fourth()?),
+    );
+    whole(recording, gauge, "identify_all_four", 300, size_of_val(&four), |sample| {
+        let (stream, ewrls, sprls, bls, blmf) = &mut four;
+        if let Ok(event) = stream.update(sample) {
+            black_box(ewrls.follow(stream, &event));
+            black_box(sprls.follow(stream, &event));
+            black_box(bls.follow(stream, &event));
+            black_box(blmf.follow(stream, &event));
+        }
+    })
+}
+
+fn whole(
+    recording: &Recording,
+    gauge: &mut Gauge,
+    name: &str,
+    window: u16,
+    state: usize,
+    mut take: impl FnMut(Sample),
+) -> Result<(), Fault> {
+    gauge.case(name, window, state, 0)?;
+    for &sample in recording.samples {
+        gauge.pass(&mut Take(&mut take, sample))?;
+    }
+    Ok(())
+}
