@@ -44,6 +44,45 @@ fn a_lens_passes_a_sine_as_its_corner_says() {
     assert!((size - 0.5).abs() < 2e-3, "{size}");
 }
 
+/// The tip of a tool with `play`, which follows the sensor at `x`.
+fn tip(x: &[f64], play: f64) -> Vec<f64> {
+    let mut at = x[0];
+    let follow = |x: &f64| {
+        at = at.clamp(x - 0.5 * play, x + 0.5 * play);
+        at
+    };
+    x.iter().map(follow).collect()
+}
+
+#[test]
+fn play_behind_the_first_of_two_passes_is_play_and_behind_one_it_is_not() {
+    let x: Vec<f64> = (0..4000).map(|row| (std::f64::consts::TAU * 4.0 * f64::from(row) * 1e-3).sin()).collect();
+    let lens = Lens::in_two(13e-3, 1e-3, 2, 4);
+    let passes = lens.passes().unwrap();
+    let edge = lens.reach() / lens.stride + 4;
+    let truth = lens.level(&tip(&x, 0.1));
+    let one: Vec<f64> = {
+        let every = lens.finer(1.0);
+        tip(&every.level(&x), 0.1).into_iter().step_by(lens.stride).collect()
+    };
+    let two = passes.second.level(&tip(&passes.first.level(&x), 0.1));
+    let (one, two) = (apart(&truth, &one, edge), apart(&truth, &two, edge));
+    // A corner is missed by the square of the blur: of a quarter of it, by a sixteenth; the tip's rest at a turn by less.
+    assert!(one > 0.01 && two < one / 8.0, "{one} {two}");
+}
+
+#[test]
+fn two_passes_are_one_gaussian_to_a_linear_law() {
+    let x: Vec<f64> = (0..4000).map(|row| (std::f64::consts::TAU * 9.0 * f64::from(row) * 1e-3).sin()).collect();
+    let lens = Lens::in_two(13e-3, 1e-3, 2, 3);
+    let passes = lens.passes().unwrap();
+    let edge = lens.reach() / lens.stride + 4;
+    // The rows between are 2 ms apart, a third of the second pass: its sum is the integral to exp(-2 (3 pi)^2 / 9) and less;
+    // the ends of both supports leave 3e-4 of their peaks.
+    let apart = apart(&lens.slope(&x), &passes.second.level(&passes.first.slope(&x)), edge);
+    assert!(apart < 1e-3 * std::f64::consts::TAU * 9.0, "{apart}");
+}
+
 #[test]
 fn a_slow_motion_on_a_coarse_encoder_is_known_far_better_than_its_steps() {
     let step = 1e-4;

@@ -27,6 +27,39 @@ fn damping_that_grows_with_depth_is_its_equation() {
 }
 
 #[test]
+fn a_spring_that_stiffens_exponentially_is_its_equation() {
+    let rig = with(&rig(REFERENCE, false), "[[effect]]\nname = \"nonlinear_stiffness\"\nstiffening_1_m = 120\n");
+    let recording = run(&rig);
+    let mut most = 0.0f64;
+    for (row, x, v) in inside(&rig) {
+        let expected = (STIFFNESS * (120.0 * x).exp_m1() / 120.0 + DAMPING * v).max(0.0);
+        close(force(&recording)[row], expected, 1e-12, "force");
+        most = most.max(expected - STIFFNESS * x);
+    }
+    assert!(most > 1.0, "{most} N of it");
+}
+
+#[test]
+fn a_loop_that_yields_gradually_goes_in_as_its_closed_form() {
+    let (height, depth) = (0.5, 1e-3);
+    let table = format!(
+        "[[effect]]\nname = \"hysteresis\"\nloop_force_n = {height}\nyield_depth_m = {depth}\nsharpness = 1\n"
+    );
+    let rig = with(&rig(REFERENCE, false), &table);
+    let recording = run(&rig);
+    // Going in for the first time dz = (1 - z) dx / yield_depth, from zero: z = 1 - exp(-x / yield_depth).
+    let mut deepest = 0.0;
+    let first = inside(&rig).take_while(|(row, _, v)| *row < 1000 && *v > 0.0);
+    for (row, x, v) in first {
+        let expected = STIFFNESS * x + DAMPING * v - height * (-x / depth).exp_m1();
+        // A step of at most 0.15 mm, by the left end of the slope: half of its share of the yield depth, at the steepest 0.37.
+        close(force(&recording)[row], expected, 0.03 * height, "force");
+        deepest = x;
+    }
+    assert!(deepest > 3.0 * depth, "{deepest}");
+}
+
+#[test]
 fn a_maxwell_branch_relaxes_as_its_closed_form() {
     let reference = Reference { period_s: 4.0, contact_s: 3.0, sine_amplitude: 0.0, ..REFERENCE };
     let (branch, time) = (150.0, 0.4);
