@@ -119,6 +119,18 @@ fn reach_of(parameter: &Parameter, term: &Term, scene: &Scene) -> (f64, f64) {
     }
 }
 
+/// Whether a value of `term`, which are the last of `values`, ended at an end of what the recordings can show: it is then not
+/// shown by them.
+#[must_use]
+pub fn is_at_limit(term: &Term, trials: usize, values: &[f64], scene: &Scene) -> bool {
+    let parameters = term.all_parameters(trials);
+    let own = &values[values.len() - parameters.len()..];
+    parameters.iter().zip(own).any(|(parameter, value)| {
+        let (low, high) = reach_of(parameter, term, scene);
+        parameter.limit != Limit::Card && (*value <= low * (1.0 + NUDGE) || *value >= high * (1.0 - NUDGE))
+    })
+}
+
 /// Share of its scale by which a value is moved to see what it does.
 const NUDGE: f64 = 1e-4;
 

@@ -99,6 +99,9 @@ pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<J
         rivals = rivals_of(study, search);
         let stand = &search.rounds.last()?.stand;
         let better = rivals.iter().filter(|rival| worth(rival) + 8.0 < stand.view.energy + free(&rival.instead_of));
+        let shown =
+            |rival: &&Rival| !fit::is_at_limit(&rival.term, rival.model.trials(), &rival.fit.values, &stand.scene);
+        let better = better.filter(shown);
         let Some(better) = better.min_by(|a, b| worth(a).total_cmp(&worth(b))).cloned() else { break };
         say(&format!("{} explains more than {}", better.term.name(), better.instead_of.name()));
         select::exchange(study, search, &better.model, &better.fit.values, say);

@@ -265,7 +265,9 @@ fn acceptable<'a>(study: &Study, round: &'a Round) -> Option<&'a Candidate> {
         let gain = left - candidate.energy - candidate.by_chance;
         // What shakes a drive follows no law: one that takes so much of it is no shaking.
         let convincing = gain > CONVINCING * left && candidate.p_any < ALARM * ALARM;
+        let model = &candidate.model;
         candidate.p_any < ALARM
+            && !fit::is_at_limit(&candidate.term, model.trials(), &candidate.values, &round.stand.scene)
             && candidate.held_out < round.held_out
             && is_practical(round, [force, effort && !convincing], candidate)
             && gain > WORTHWHILE * above

@@ -42,9 +42,8 @@ fn a_spring_that_stiffens_exponentially_is_its_equation() {
 #[test]
 fn a_loop_that_yields_gradually_goes_in_as_its_closed_form() {
     let (height, depth) = (0.5, 1e-3);
-    let table = format!(
-        "[[effect]]\nname = \"hysteresis\"\nloop_force_n = {height}\nyield_depth_m = {depth}\nsharpness = 1\n"
-    );
+    let table =
+        format!("[[effect]]\nname = \"hysteresis\"\nloop_force_n = {height}\nyield_depth_m = {depth}\nsharpness = 1\n");
     let rig = with(&rig(REFERENCE, false), &table);
     let recording = run(&rig);
     // Going in for the first time dz = (1 - z) dx / yield_depth, from zero: z = 1 - exp(-x / yield_depth).
