@@ -59,15 +59,16 @@ fn driven(contact: &str) -> (Study, Whitener) {
 const PAD: &str = "[contact]\nmodel = \"kelvin_voigt\"\nsurface_m = 0.0\nstiffness_n_m = 300\ndamping_n_s_m = 5\n";
 
 fn look(text: &str) -> (Study, Whitener) {
-    look_at(text, 1)
+    look_at(text, "", 1)
 }
 
-/// `count` recordings of one rig.
-fn look_at(text: &str, count: u64) -> (Study, Whitener) {
+/// `count` recordings of a rig that has `effects` which its file does not know.
+fn look_at(text: &str, effects: &str, count: u64) -> (Study, Whitener) {
     let rig = Rig::parse(text, "rig.toml").unwrap();
+    let real = Rig::parse(&format!("{text}{effects}"), "rig.toml").unwrap();
     let raws: Vec<Raw> = (1..=count)
         .map(|seed| {
-            let recording = simulate(&rig, seed, "rig.toml").unwrap().recording;
+            let recording = simulate(&real, seed, "rig.toml").unwrap().recording;
             Raw::of(&recording, Figures::of(&rig, &recording), recording.period())
         })
         .collect();
@@ -225,10 +226,8 @@ fn what_two_real_recordings_leave_open_is_closed_by_the_experiment() {
     let swung = pad(BENCH, 8.0)
         .replace("damping_n_s_m = 5\n", "damping_n_s_m = 5\nbilateral = true\n")
         .replace("free_depth_m = -0.005", "free_depth_m = 0.0079");
-    let swung = format!(
-        "{swung}[[effect]]\nname = \"stress_relaxation\"\nbranch_stiffness_n_m = 30\nrelaxation_time_s = 0.05\n"
-    );
-    let bench = look_at(&swung, 2);
+    let relaxes = "[[effect]]\nname = \"stress_relaxation\"\nbranch_stiffness_n_m = 30\nrelaxation_time_s = 0.05\n";
+    let bench = look_at(&swung, relaxes, 2);
     assert_eq!((bench.0.nominal.contact, bench.0.nominal.shifts.len()), (Some(true), 1));
     let fitted = |name: &str, parameters: &[f64]| {
         let (model, start) = model(&bench.0, name, parameters);

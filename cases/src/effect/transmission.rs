@@ -110,7 +110,7 @@ impl Shape for Backlash {
 
     fn sizes(&self) -> Sizes {
         // Less is lost between two steps of any encoder here.
-        Sizes { smallest: 1.0, first: 5.0, largest: 150.0 }
+        Sizes { smallest: 1.0, first: 1.0, largest: 150.0 }
     }
 
     fn put(&self, size: f64, physics: &mut Physics) {

@@ -55,7 +55,10 @@ const SHARE: f64 = 0.6;
 /// noise of its acceleration may add, over that of the force noise. The drive shakes the tool by less than a step of the
 /// encoder; a mass feels that, and seen through the steps it seems lighter than it is.
 const CARRIED: f64 = 0.05;
-const UNSEEN: f64 = 0.2;
+const UNSEEN: f64 = 0.05;
+
+/// Share of the sharpest filter that noise allows where nobody says how heavy the drive is.
+const UNTOLD: f64 = 0.3;
 
 /// Widths after which the Gaussian ends: 3e-4 of its peak.
 const SUPPORT: f64 = 4.0;
@@ -78,12 +81,11 @@ impl Lens {
             let slope = contact.damping * position * std::f64::consts::TAU / 3f64.sqrt();
             if slope > 0.0 && force > 0.0 { left.sqrt() / slope } else { f64::INFINITY }
         });
-        let carried = rig.drive.map_or(0.0, |drive| CARRIED * drive.inertia * position);
-        let calm = if carried > 0.0 && force > 0.0 {
-            (UNSEEN * force * 5f64.sqrt() / carried).sqrt() / std::f64::consts::TAU
-        } else {
-            f64::INFINITY
-        };
+        let calm = rig.drive.map_or(UNTOLD * corner, |drive| {
+            let carried = CARRIED * drive.inertia * position;
+            let calm = (UNSEEN * force * 5f64.sqrt() / carried).sqrt() / std::f64::consts::TAU;
+            if carried > 0.0 && force > 0.0 { calm } else { f64::INFINITY }
+        });
         let sharpest = raws.first().map_or(corner, |raw| corner.min(MOST / raw.period));
         Self::cornered(raws, (corner, calm.min(0.5 * sharpest)), 0.02, BUDGET)
     }

@@ -81,8 +81,8 @@ pub const ALARM: f64 = 0.002;
 /// see.
 const PRACTICAL: f64 = 0.2;
 
-/// Share of the energy in a drive's balance from which an effect is believed, whatever the encoder's steps may leave there.
-const CONVINCING: f64 = 0.05;
+/// Share of the energy from which an effect is believed, whatever the encoder's steps may leave of force and of effort.
+const CONVINCING: [f64; 2] = [0.25, 0.05];
 
 /// Least share of the energy above the floor that a further effect has to take.
 const WORTHWHILE: f64 = 0.12;
@@ -263,13 +263,13 @@ fn acceptable<'a>(study: &Study, round: &'a Round) -> Option<&'a Candidate> {
     let above = (left - mean(&round.stand)).max(0.0);
     let able = |candidate: &&Candidate| {
         let gain = left - candidate.energy - candidate.by_chance;
-        // What shakes a drive follows no law: one that takes so much of it is no shaking.
-        let convincing = gain > CONVINCING * left && candidate.p_any < ALARM * ALARM;
+        // What the encoder's steps leave follows no law: one that takes so much of it is no rounding.
+        let convincing = CONVINCING.map(|share| gain > share * left && candidate.p_any < ALARM * ALARM);
         let model = &candidate.model;
         candidate.p_any < ALARM
             && !fit::is_at_limit(&candidate.term, model.trials(), &candidate.values, &round.stand.scene)
             && candidate.held_out < round.held_out
-            && is_practical(round, [force, effort && !convincing], candidate)
+            && is_practical(round, [force && !convincing[0], effort && !convincing[1]], candidate)
             && gain > WORTHWHILE * above
     };
     round.candidates.iter().find(able)
