@@ -66,6 +66,9 @@ const SUPPORT: f64 = 4.0;
 /// Rows of the analysis that all trials together should have, unless that would blind it.
 const BUDGET: f64 = 9_000.0;
 
+/// Rows below which none are given up for a law to act between two filters.
+const FEW: f64 = 1_000.0;
+
 /// How much sharper laws may look than the rows that are kept of what they leave.
 const SHARPER: f64 = 3.0;
 
@@ -87,7 +90,9 @@ impl Lens {
             if carried > 0.0 && force > 0.0 { calm } else { f64::INFINITY }
         });
         let sharpest = raws.first().map_or(corner, |raw| corner.min(MOST / raw.period));
-        Self::cornered(raws, (corner, calm.min(0.5 * sharpest)), 0.02, BUDGET)
+        let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
+        let half = if 0.5 * ROWS * sharpest * seconds < FEW { sharpest } else { 0.5 * sharpest };
+        Self::cornered(raws, (corner, calm.min(half)), 0.02, BUDGET)
     }
 
     /// The sharpest filter for the drive: the same of what position noise does to inertia times acceleration.

@@ -115,6 +115,9 @@ const SHAKEN: f64 = 0.012;
 /// Share of its scale by which a value may be biased.
 const FAR: f64 = 0.5;
 
+/// Growth of what twins leave beyond which their origin is astray.
+const LOUD: f64 = 2.0;
+
 /// Twins that tell the floor.
 const FOR_FLOOR: usize = 24;
 
@@ -247,9 +250,10 @@ impl Study {
     #[must_use]
     pub fn stand(&self, model: &Model, start: &[f64], count: usize, before: Option<&Whitener>) -> Stand {
         let (mut values, mut whitener, mut noise) = (start.to_vec(), None, Vec::new());
-        let mut origin = values.clone();
-        // The floor depends on the values and they on the floor, weakly: twice is enough.
-        for _ in 0..2 {
+        let (mut origin, mut quiet) = (values.clone(), f64::INFINITY);
+        // The floor depends on the values and they on the floor, weakly: twice is enough, and once more where values that
+        // next to nothing tells apart were led astray.
+        for pass in 0..3 {
             let truth = self.studio.truth(model, &origin);
             noise = self.studio.noise(model, &values, &truth);
             let twins: Vec<Vec<Trial>> = (0..FOR_FLOOR as u64)
@@ -257,12 +261,22 @@ impl Study {
                 .map(|number| self.studio.twin(&truth, &noise, 1000 + number))
                 .collect();
             let samples: Vec<Vec<Rest>> = twins.par_iter().map(|twin| self.rests(model, &values, twin)).collect();
+            if pass == 1 && loudness(&samples) > LOUD * quiet {
+                origin.clone_from(&values);
+                continue;
+            }
+            quiet = loudness(&samples);
             let floors =
                 before.map_or_else(|| self.floors(model, &samples), |b| self.floors(model, &samples).no_worse_than(b));
             let own = floors.learnt(&self.rests(model, &values, &self.studio.trials));
             values = self.fit(model, &values, &own).values;
-            self.unbias(model, &values, &floors, &twins, &mut origin);
+            if pass == 0 {
+                self.unbias(model, &values, &floors, &twins, &mut origin);
+            }
             whitener = Some(floors);
+            if pass == 1 {
+                break;
+            }
         }
         let floors = whitener.unwrap_or_else(|| self.even_floors());
         let whitener = floors.learnt(&self.rests(model, &values, &self.studio.trials));
@@ -357,6 +371,11 @@ impl Study {
             effort: model.drive.then(|| of(true, &|rest| rest.effort.clone())),
         }
     }
+}
+
+/// Energy of all that twins leave, of both channels.
+fn loudness(samples: &[Vec<Rest>]) -> f64 {
+    samples.iter().flatten().map(|rest| fit::energy(&rest.force) + fit::energy(&rest.effort)).sum()
 }
 
 fn view(
