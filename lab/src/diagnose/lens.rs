@@ -91,8 +91,8 @@ impl Lens {
         });
         let sharpest = raws.first().map_or(corner, |raw| corner.min(MOST / raw.period));
         let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
-        let half = if 0.5 * ROWS * sharpest * seconds < FEW { sharpest } else { 0.5 * sharpest };
-        Self::cornered(raws, (corner, calm.min(half)), 0.02, BUDGET)
+        let whole = calm.min(0.5 * sharpest).max(FEW / (ROWS * seconds.max(f64::MIN_POSITIVE))).min(corner);
+        Self::cornered(raws, (corner, whole), 0.02, BUDGET)
     }
 
     /// The sharpest filter for the drive: the same of what position noise does to inertia times acceleration.
