@@ -101,8 +101,8 @@ impl Lens {
         let (position, force) = noises(raws);
         let shaken = rig.drive.map_or(0.0, |drive| drive.inertia * position);
         // Where no force is measured, the effort itself says what the balance is good for: its noise, or a hundredth of it.
-        // A tenth of it, for nothing else holds the inertia against the noise of the acceleration.
-        let force = if force > 0.0 { force } else { 0.1 * raws.iter().map(effort_noise).fold(0.0, f64::max) };
+        // A fifth of it, for nothing else holds the inertia against the noise of the acceleration.
+        let force = if force > 0.0 { force } else { 0.2 * raws.iter().map(effort_noise).fold(0.0, f64::max) };
         let corner = match (shaken > 0.0, force > 0.0) {
             (true, true) => (3.0 * 5f64.sqrt() * force / shaken).sqrt() / std::f64::consts::TAU,
             _ => f64::INFINITY,
