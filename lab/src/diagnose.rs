@@ -33,6 +33,7 @@ pub mod tones;
 pub mod track;
 pub mod twin;
 pub mod unround;
+pub mod view;
 pub mod whiten;
 
 use anyhow::{Context as _, Result};

@@ -7,7 +7,8 @@ use super::fit::{self, Data};
 use super::fold::held_out;
 use super::model::{Model, Term};
 use super::score::{Remainder, Score};
-use super::study::{Stand, Study, View};
+use super::study::{Stand, Study};
+use super::view::View;
 use crate::effects::Stage;
 
 /// An effect that was tried on a stand: fitted in full, and judged on data it did not see.

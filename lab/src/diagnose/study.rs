@@ -6,10 +6,10 @@ use super::fit::{self, Data, Fit};
 use super::lens::Lens;
 use super::measure::scene;
 use super::model::{Channels, Model, Rest, Term, index};
-use super::score::{Remainder, Score};
-use super::texture::{self, Texture};
+use super::score::Remainder;
 use super::track::{Track, Trial};
 use super::twin::{Noise, Studio};
+use super::view::{View, view};
 use super::whiten::{Floor, Whitener, tracks};
 use crate::effects::{self, Scene};
 use crate::error::InputError;
@@ -62,41 +62,6 @@ impl Stand {
             let twins = self.twins.iter().map(|view| view.powers[channel]).sum::<f64>();
             if twins > 0.0 { self.view.powers[channel] * self.twins.len() as f64 / twins } else { 0.0 }
         })
-    }
-}
-
-/// What a model leaves of one set of trials, a recording or a twin.
-#[derive(Debug, Clone)]
-pub struct View {
-    /// Whitened energy, once the model's own values have taken theirs.
-    pub energy: f64,
-    /// Mean square of the residual over its floor, before its memory is taken off, of force and effort: one where all is noise.
-    pub powers: [f64; 2],
-    /// What each effect could take; of a twin, the effects that are promising on the recording.
-    pub scores: Vec<Score>,
-    /// What shapes without a name could take.
-    pub textures: Vec<Texture>,
-    /// How much the rest remembers itself.
-    pub memory: f64,
-    /// By how much the model's values would have to move to fit these trials best.
-    pub shift: Vec<f64>,
-}
-
-/// Effects that are worth a closer look, on the recording and on its twins.
-const PROMISING: usize = 16;
-
-impl View {
-    /// The scores that are worth a closer look, the greatest first.
-    pub fn promising(&self) -> impl Iterator<Item = &Score> {
-        let mut scores: Vec<&Score> = self.scores.iter().collect();
-        scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        scores.into_iter().take(PROMISING)
-    }
-
-    /// What `term` could take; `None` where that was not asked.
-    #[must_use]
-    pub fn gain(&self, term: &Term) -> Option<f64> {
-        self.scores.iter().find(|score| score.term.is(term)).map(|score| score.gain)
     }
 }
 
@@ -282,18 +247,18 @@ impl Study {
         let whitener = floors.learnt(&self.rests(model, &values, &self.studio.trials));
         let scene = self.scene(model, &values);
         let truth = self.studio.truth(model, &origin);
-        let view = view(&self.studio.trials, &whitener, model, &values, &scene, &|_| true);
-        let promising: Vec<Term> = view.promising().map(|score| score.term).collect();
+        let own_view = view(&self.studio.trials, &whitener, model, &values, &scene, &|_| true);
+        let promising: Vec<Term> = own_view.promising().map(|score| score.term).collect();
         let asked = |term: &Term| promising.iter().any(|other| other.is(term));
         let twins = (0..count as u64)
             .into_par_iter()
             .map(|number| {
                 let twin = self.studio.twin(&truth, &noise, number);
                 let own = floors.learnt(&self.rests(model, &values, &twin));
-                self::view(&twin, &own, model, &values, &scene, &asked)
+                view(&twin, &own, model, &values, &scene, &asked)
             })
             .collect();
-        Stand { model: model.clone(), values, origin, scene, whitener, noise, view, twins }
+        Stand { model: model.clone(), values, origin, scene, whitener, noise, view: own_view, twins }
     }
 
     /// Moves `origin`, which `twins` were made from, by what their fits miss `values` in the mean.
@@ -376,27 +341,4 @@ impl Study {
 /// Energy of all that twins leave, of both channels.
 fn loudness(samples: &[Vec<Rest>]) -> f64 {
     samples.iter().flatten().map(|rest| fit::energy(&rest.force) + fit::energy(&rest.effort)).sum()
-}
-
-fn view(
-    trials: &[Trial],
-    whitener: &Whitener,
-    model: &Model,
-    values: &[f64],
-    scene: &Scene,
-    asked: &dyn Fn(&Term) -> bool,
-) -> View {
-    let data = Data { trials, whitener, rows: None };
-    let remainder = Remainder::of(data, model, values, scene);
-    let forgetful = whitener.forgetful();
-    let plain = Data { trials, whitener: &forgetful, rows: None }.residual(model, values, Channels::BOTH);
-    let (force, effort) = plain.split_at(fit::force_rows(&data));
-    View {
-        powers: [force, effort].map(|rows| fit::energy(rows) / rows.len().max(1) as f64),
-        energy: remainder.energy(),
-        scores: remainder.scores(scene, asked),
-        textures: texture::textures(&remainder, data, model, values, scene),
-        memory: texture::memory(&remainder, data),
-        shift: remainder.shift.clone(),
-    }
 }
