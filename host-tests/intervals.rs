@@ -4,7 +4,6 @@
 //! are looked at every 150 ms, either from 1.5 s after the onset on, when every law has settled that ever does, or from
 //! the onset itself, when the laws that carry a start with them are still far from the truth and have to know it.
 
-use crate::rig;
 use crate::simulator::{Noise, Trial};
 use palpate::{Bench, BenchConfig, BlockConfig, Flags, Method, Sensors, StreamConfig};
 
@@ -28,7 +27,7 @@ impl Coverage {
 }
 
 fn measure(trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; 9] {
-    measure_with(&rig::settings(StreamConfig::BENCH), trial, truth, from)
+    measure_with(&BenchConfig::every(StreamConfig::BENCH), trial, truth, from)
 }
 
 fn measure_with(settings: &BenchConfig, trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; 9] {
@@ -134,7 +133,7 @@ fn of_a_short_window_where_the_noise_is_known_and_where_it_is_not() {
     let unknown = Sensors { force_noise: 0.0, ..StreamConfig::BENCH.sensors };
     for (sensors, known) in [(StreamConfig::BENCH.sensors, 1.0), (unknown, 0.0)] {
         let stream = StreamConfig { sensors, ..StreamConfig::BENCH };
-        let settings = BenchConfig { block: BlockConfig::of(50), ..rig::settings(stream) };
+        let settings = BenchConfig { block: BlockConfig::of(50), ..BenchConfig::every(stream) };
         let coverage = measure_with(&settings, &soft(), [300.0, 5.0], SETTLED_FROM);
         report("window 50, K 300, B 5", &coverage);
         let bls = coverage[Method::Bls as usize];

@@ -16,7 +16,7 @@ fn long(trial: Trial) -> Trial {
 /// A bench whose plain RLS has no prior to speak of: with the paper's it is 10 % of the answer after 5 s.
 fn bench(stream: StreamConfig) -> Bench {
     let rls = EwrlsConfig { initial_covariance: 1e5, ..EwrlsConfig::rls() };
-    Bench::new(&BenchConfig { rls, ..rig::settings(stream) }).expect("sound settings")
+    Bench::new(&BenchConfig { rls, ..BenchConfig::every(stream) }).expect("sound settings")
 }
 
 /// Samples that a law averages over, at least: its window, its horizon; for the gradient law the inverse of the part of a

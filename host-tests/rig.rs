@@ -2,8 +2,8 @@
 
 use palpate::{
     Bench, BenchConfig, BenchEstimates, BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares,
-    Direction, Estimate, Ewrls, EwrlsConfig, Gradient, GradientConfig, Law, Method, Methods, Observation, Rejection,
-    ResetRls, ResetRlsConfig, Sample, Sprls, SprlsConfig, Step, StreamConfig, Window,
+    Direction, Estimate, Ewrls, EwrlsConfig, Gradient, GradientConfig, Law, Method, Observation, Rejection, ResetRls,
+    ResetRlsConfig, Sample, Sprls, SprlsConfig, Step, StreamConfig, Window,
 };
 
 /// Everything runs, the block laws on 300 samples.
@@ -13,21 +13,7 @@ pub fn bench(stream: StreamConfig) -> Bench {
 
 /// Everything runs, the block laws as `block` says.
 pub fn bench_with(stream: StreamConfig, block: BlockConfig) -> Bench {
-    Bench::new(&BenchConfig { block, ..settings(stream) }).expect("sound settings")
-}
-
-/// Everything runs with the settings of the paper.
-pub fn settings(stream: StreamConfig) -> BenchConfig {
-    BenchConfig {
-        stream,
-        methods: Method::ALL.into_iter().fold(Methods::default(), Methods::with),
-        rls: EwrlsConfig::rls(),
-        ewrls: EwrlsConfig::default(),
-        sprls: SprlsConfig::default(),
-        reset_rls: ResetRlsConfig::default(),
-        gradient: GradientConfig::default(),
-        block: BlockConfig::default(),
-    }
+    Bench::new(&BenchConfig { block, ..BenchConfig::every(stream) }).expect("sound settings")
 }
 
 /// What came of each sample.

@@ -131,6 +131,23 @@ pub struct BenchConfig {
     pub block: BlockConfig,
 }
 
+impl BenchConfig {
+    /// Every method at its own defaults behind `stream`.
+    #[must_use]
+    pub fn every(stream: StreamConfig) -> Self {
+        Self {
+            stream,
+            methods: Method::ALL.into_iter().fold(Methods::default(), Methods::with),
+            rls: EwrlsConfig::rls(),
+            ewrls: EwrlsConfig::default(),
+            sprls: SprlsConfig::default(),
+            reset_rls: ResetRlsConfig::default(),
+            gradient: GradientConfig::default(),
+            block: BlockConfig::default(),
+        }
+    }
+}
+
 /// Longest window of a [`Bench`], samples: 24 kB of the 128 kB of an STM32F405.
 pub const BENCH_WINDOW: usize = 2048;
 

@@ -27,6 +27,7 @@ pub mod report;
 pub mod score;
 pub mod select;
 pub mod sentence;
+pub mod stand;
 pub mod study;
 pub mod texture;
 pub mod tones;

@@ -62,7 +62,7 @@ fn play_behind_the_first_of_two_passes_is_play_and_behind_one_it_is_not() {
     let edge = lens.reach() / lens.stride + 4;
     let truth = lens.level(&tip(&x, 0.1));
     let one: Vec<f64> = {
-        let every = lens.finer(1.0);
+        let every = lens.every_row();
         tip(&every.level(&x), 0.1).into_iter().step_by(lens.stride).collect()
     };
     let two = passes.second.level(&tip(&passes.first.level(&x), 0.1));

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use palpate::exchange::{Counters, Outcome, estimate_words};
 use palpate::{
-    Bench, BenchConfig, BlockConfig, ContactLoss, EwrlsConfig, Field, FrontEndConfig, GradientConfig, Method, Methods,
-    Rejection, ResetRlsConfig, Sample, SprlsConfig, StreamConfig, Velocity,
+    Bench, BenchConfig, BlockConfig, ContactLoss, Field, FrontEndConfig, Method, Rejection, Sample, StreamConfig,
+    Velocity,
 };
 use palpate_lab::device::{Device, project};
 use palpate_lab::recording::Recording;
@@ -30,21 +30,8 @@ fn device() -> Option<Device> {
     }
 }
 
-fn every_method() -> Methods {
-    Method::ALL.into_iter().fold(Methods::default(), Methods::with)
-}
-
 fn every_estimator(stream: StreamConfig) -> BenchConfig {
-    BenchConfig {
-        stream,
-        methods: every_method(),
-        rls: EwrlsConfig::rls(),
-        ewrls: EwrlsConfig::default(),
-        sprls: SprlsConfig::default(),
-        reset_rls: ResetRlsConfig::default(),
-        gradient: GradientConfig::default(),
-        block: BlockConfig::of(120),
-    }
+    BenchConfig { block: BlockConfig::of(120), ..BenchConfig::every(stream) }
 }
 
 /// Runs both and compares every word of every outcome; returns the device's counters and the host's outcomes.
@@ -218,7 +205,7 @@ fn an_empty_recording_and_a_single_sample_come_back() {
 #[test]
 fn settings_out_of_range_are_refused_by_the_image_and_told() {
     let Some(device) = device() else { return };
-    let config = BenchConfig { block: BlockConfig::of(5000), ..every_estimator(StreamConfig::BENCH) };
+    let config = BenchConfig { block: BlockConfig::of(5000), ..BenchConfig::every(StreamConfig::BENCH) };
     let error = device.run(&config, &[], |_| (), |_| ()).expect_err("a window of 5000 samples");
     assert!(format!("{error:#}").contains("the settings are out of range"), "{error:#}");
 }

@@ -1,13 +1,16 @@
 //! The page of a replay: safe to pass on, true to the data, light enough to open.
 
+#[path = "page/full.rs"]
+mod full;
 #[path = "page/reading.rs"]
 mod reading;
 #[path = "page/synthetic.rs"]
 mod synthetic;
 
+use full::Full;
 use palpate_lab::page::{Page, Trial};
 use reading::{bytes, doubles, floats, prose};
-use std::io::{self, ErrorKind, Write};
+use std::io::ErrorKind;
 use std::time::{Duration, Instant};
 use synthetic::{AFM, BENCH, Touching, odd, page, touching};
 
@@ -239,20 +242,6 @@ fn columns_of_unequal_length_are_refused() {
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
     assert!(error.to_string().contains("torn.csv"));
     assert!(out.is_empty());
-}
-
-/// A disk that is full after `0` bytes.
-struct Full(usize);
-
-impl Write for Full {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0 = self.0.checked_sub(bytes.len()).ok_or(ErrorKind::StorageFull)?;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 #[path = "report/answers.rs"]
 mod answers;
+#[path = "page/full.rs"]
+mod full;
 #[path = "page/reading.rs"]
 mod reading;
 #[path = "report/safe.rs"]

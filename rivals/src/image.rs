@@ -26,11 +26,5 @@ fn main() {
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    match input::read().and_then(|recording| gauge::Gauge::start().and_then(|gauge| cases::run(&recording, gauge))) {
-        Ok(()) => semihosting::process::exit(0),
-        Err(fault) => {
-            semihosting::eprintln!("rivals: {fault}");
-            semihosting::process::exit(1)
-        }
-    }
+    gauge::measure(cases::run)
 }

@@ -149,17 +149,11 @@ pub fn jacobian(data: &Data<'_>, model: &Model, values: &[f64], axes: &[Axis], b
         let there = data.residual(model, &moved, channels);
         moved[at] = values[at];
         let column = there.iter().zip(base).enumerate();
-        let split = force_rows(data);
+        let split = data.whitener.force_rows();
         let counts = |row: usize| if row < split { channels.force } else { channels.effort };
         columns.push((at, column.map(|(row, (a, b))| if counts(row) { (a - b) / nudge } else { 0.0 }).collect()));
     }
     columns
-}
-
-/// Whitened rows of the force channel, which come first.
-#[must_use]
-pub fn force_rows(data: &Data<'_>) -> usize {
-    data.whitener.force.iter().flat_map(|floor| &floor.rows).map(Vec::len).sum()
 }
 
 /// The channels that value `at` of `model` reaches.

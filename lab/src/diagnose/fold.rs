@@ -66,7 +66,7 @@ fn frozen(study: &Study, whitener: &Whitener, model: &Model, values: &[Vec<f64>]
         halves.iter().enumerate().map(|(row, half)| whites[1 - half][row]).collect()
     };
     let energy = fit::energy(&judged(whitener));
-    let powers = powers(whitener, &judged(&whitener.forgetful()));
+    let powers = whitener.powers(&judged(&whitener.forgetful()));
     let mix = |trial: usize, effort: bool| {
         let pick = |rest: &Rest| if effort { rest.effort.clone() } else { rest.force.clone() };
         let track = trials[trial].track(effort);
@@ -84,15 +84,8 @@ fn frozen(study: &Study, whitener: &Whitener, model: &Model, values: &[Vec<f64>]
 #[must_use]
 pub fn as_given(study: &Study, whitener: &Whitener, model: &Model, values: &[f64]) -> HeldOut {
     let rests: Vec<Rest> = study.studio.trials.iter().map(|trial| model.rest(values, trial, Channels::BOTH)).collect();
-    let powers = powers(whitener, &whitener.forgetful().white(&rests));
+    let powers = whitener.powers(&whitener.forgetful().white(&rests));
     HeldOut { energy: fit::energy(&whitener.white(&rests)), powers, rests, taught: Vec::new() }
-}
-
-/// Mean squares of scaled residuals, force of all trials and then effort.
-fn powers(whitener: &Whitener, scaled: &[f64]) -> [f64; 2] {
-    let force = whitener.force.iter().flat_map(|floor| &floor.rows).map(Vec::len).sum();
-    let (force, effort) = scaled.split_at(force);
-    [force, effort].map(|rows| fit::energy(rows) / rows.len().max(1) as f64)
 }
 
 /// Root mean square of the floor over the rows of a channel that were seen whole; `None` where the channel is not there.

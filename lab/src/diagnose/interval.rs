@@ -2,7 +2,7 @@
 
 use super::fit;
 use super::fold::HeldOut;
-use super::study::Stand;
+use super::stand::Stand;
 
 /// A value without the bias that twins show, and its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,7 +8,8 @@ use super::fold::{self, HeldOut};
 use super::model::{Model, Term, index};
 use super::score::Remainder;
 use super::select::{self, ALARM, Search};
-use super::study::{Stand, Study};
+use super::stand::Stand;
+use super::study::Study;
 use crate::effects::Place;
 
 /// What came out of a search.
@@ -195,7 +196,7 @@ fn rivals_of(study: &Study, search: &Search) -> Vec<Rival> {
         if drive(&own) && study.doubtful(stand)[0] {
             scores.retain(|score| drive(&score.term));
         }
-        let tried = scores.par_iter().filter(|score| score.term.name() != own.name() || score.term.form != own.form);
+        let tried = scores.par_iter().filter(|score| !score.term.is(&own));
         rivals.par_extend(tried.map(|score| {
             let model = base.with(score.term);
             let start: Vec<f64> = fitted.values.iter().chain(&score.values).copied().collect();

@@ -169,10 +169,10 @@ impl Lens {
         }
     }
 
-    /// Every row, through `part` of the blur: as close to the motion itself as noise lets one see.
+    /// The same filter, every row kept.
     #[must_use]
-    pub fn finer(&self, part: f64) -> Self {
-        Self::new((part * self.blur).max(0.6 * self.period), self.period, 1)
+    pub fn every_row(&self) -> Self {
+        Self::new(self.blur.max(0.6 * self.period), self.period, 1)
     }
 
     /// Seconds between two rows of the analysis.

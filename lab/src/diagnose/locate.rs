@@ -6,7 +6,8 @@ use rustfft::num_complex::Complex;
 use super::answer::{Location, Map, Phase};
 use super::model::{Model, Rest};
 use super::phase;
-use super::study::{Stand, Study};
+use super::stand::Stand;
+use super::study::Study;
 use crate::page::quantity;
 use crate::rig::Coordinate;
 

@@ -142,7 +142,7 @@ impl<'a> Remainder<'a> {
     fn score(&self, term: Term, start: &Start) -> Option<Score> {
         let model = self.model.with(term);
         let channels = self.model.reach(term.effect.card().place);
-        let split = fit::force_rows(&self.data);
+        let split = self.data.whitener.force_rows();
         let change = |own: &[f64]| {
             let values: Vec<f64> = self.values.iter().chain(own).copied().collect();
             let there = self.data.residual(&model, &values, channels);

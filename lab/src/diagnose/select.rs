@@ -7,7 +7,8 @@ use super::fit::{self, Data};
 use super::fold::held_out;
 use super::model::{Model, Term};
 use super::score::{Remainder, Score};
-use super::study::{Stand, Study};
+use super::stand::Stand;
+use super::study::Study;
 use super::view::View;
 use crate::effects::Stage;
 

@@ -3,7 +3,7 @@
 //! What effects are asked one by one, these coarse shapes are asked together. Where they find what no effect explains,
 //! the honest answer is `unknown`.
 
-use super::fit::{Data, dot, force_rows};
+use super::fit::{Data, dot};
 use super::model::{Model, Rest, index};
 use super::score::{Remainder, solve};
 use super::track::Track;
@@ -127,14 +127,14 @@ fn shape(family: &Family<'_>, at: usize, data: Data<'_>) -> Vec<f64> {
     if let Some(rows) = data.rows {
         white.iter_mut().zip(rows).filter(|(_, counts)| !**counts).for_each(|(value, _)| *value = 0.0);
     }
-    debug_assert!(white.len() >= force_rows(&data));
+    debug_assert!(white.len() >= data.whitener.force_rows());
     white
 }
 
 /// How much of what is left remembers itself: the sum of the squared correlations over a few rows, in either channel.
 #[must_use]
 pub fn memory(remainder: &Remainder<'_>, data: Data<'_>) -> f64 {
-    let split = force_rows(&data);
+    let split = data.whitener.force_rows();
     let (force, effort) = remainder.free.split_at(split);
     [force, effort].into_iter().map(portmanteau).fold(0.0, f64::max)
 }

@@ -12,7 +12,7 @@ pub fn loudest(tones: &Tones, data: Data<'_>, model: &Model, values: &[f64], bas
     let on_effort = tones.abscissa == Abscissa::Position;
     let channel = if on_effort { &data.whitener.effort } else { &data.whitener.force };
     let Some(floor) = channel else { return Vec::new() };
-    let offset = if on_effort { super::fit::force_rows(&data) } else { 0 };
+    let offset = if on_effort { data.whitener.force_rows() } else { 0 };
     let mut heard = Vec::new();
     for &(first, apart, count) in &tones.frequencies {
         let mut loud = vec![0.0; count];

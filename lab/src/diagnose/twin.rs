@@ -60,9 +60,6 @@ pub struct Truth {
     effort: Vec<Option<Vec<f64>>>,
 }
 
-/// Share of the blur through which the motion of a twin is seen.
-const FINENESS: f64 = 1.0;
-
 /// Widths of the filter over which a rest begins and ends.
 const EDGE: f64 = 3.0;
 
@@ -73,7 +70,7 @@ impl Studio {
     /// Prepares `raws`.
     #[must_use]
     pub fn new(raws: Vec<Raw>, lens: Lens, drive_lens: Lens, seed: u64) -> Self {
-        let finest = lens.first().finer(FINENESS);
+        let finest = lens.first().every_row();
         let fine = raws.par_iter().map(|raw| Track::of(raw, &finest)).collect();
         let least = (2.0 * EDGE * lens.blur / lens.period).ceil() as usize;
         let rests = raws.iter().map(|raw| rests(raw, least)).collect();

@@ -1,6 +1,6 @@
 //! What a model leaves of a recording or a twin, and what effects could take of it.
 
-use super::fit::{self, Data};
+use super::fit::Data;
 use super::model::{Channels, Model, Term};
 use super::score::{Remainder, Score};
 use super::texture::{self, Texture};
@@ -57,9 +57,8 @@ pub fn view(
     let remainder = Remainder::of(data, model, values, scene);
     let forgetful = whitener.forgetful();
     let plain = Data { trials, whitener: &forgetful, rows: None }.residual(model, values, Channels::BOTH);
-    let (force, effort) = plain.split_at(fit::force_rows(&data));
     View {
-        powers: [force, effort].map(|rows| fit::energy(rows) / rows.len().max(1) as f64),
+        powers: whitener.powers(&plain),
         energy: remainder.energy(),
         scores: remainder.scores(scene, asked),
         textures: texture::textures(&remainder, data, model, values, scene),

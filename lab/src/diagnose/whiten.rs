@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::fit;
 use super::model::Rest;
 use super::track::{Track, Trial};
 
@@ -216,6 +217,19 @@ impl Whitener {
                 .flat_map(move |(trial, rows)| rows.into_iter().map(move |row| Row { trial, row, effort }))
         };
         channel(false, &self.force).chain(channel(true, &self.effort)).collect()
+    }
+
+    /// Rows of the force channel, which come first.
+    #[must_use]
+    pub fn force_rows(&self) -> usize {
+        self.force.iter().flat_map(|floor| &floor.rows).map(Vec::len).sum()
+    }
+
+    /// Mean squares of whitened residuals of all trials, of force and of effort.
+    #[must_use]
+    pub fn powers(&self, white: &[f64]) -> [f64; 2] {
+        let (force, effort) = white.split_at(self.force_rows());
+        [force, effort].map(|rows| fit::energy(rows) / rows.len().max(1) as f64)
     }
 
     /// The whitened residuals of all trials; a channel that was not asked for is zero.

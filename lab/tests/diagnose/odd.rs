@@ -33,7 +33,6 @@ fn with_a_quarter_of_a_second_lost() {
 }
 
 #[test]
-#[ignore = "named rightly, but \"unknown\" beside it: the floor of rows this uneven comes out 1.6 times too low"]
 fn on_a_wildly_unsteady_clock() {
     // Two of five rows are missing: the clock of the rows is unsteady, and each stamp is true.
     let case = fades(Size { rate_hz: 1000.0, ..BENCH });

@@ -1,10 +1,11 @@
 //! Nothing that a page is made of can break it, and it asks nothing of anybody.
 
 use crate::answers::explained;
+use crate::full::Full;
 use crate::{Diagnosis, every_kind, written};
 use palpate_lab::diagnose::answer::{Map, Pictures};
 use palpate_lab::diagnose::report;
-use std::io::{self, ErrorKind, Write};
+use std::io::ErrorKind;
 
 #[test]
 fn the_page_needs_no_network() {
@@ -126,20 +127,6 @@ fn vectors_of_unequal_length_are_refused() {
     refused(|pictures| pictures.maps[1].share.truncate(1), "depth");
     refused(|pictures| pictures.maps[2] = Map { before: vec![1.0], ..pictures.maps[2].clone() }, "speed");
     refused(|pictures| pictures.experiment.iter_mut().for_each(|next| next.time.truncate(3)), "experiment");
-}
-
-/// A disk that is full after some bytes.
-struct Full(usize);
-
-impl Write for Full {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0 = self.0.checked_sub(bytes.len()).ok_or(ErrorKind::StorageFull)?;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
 }
 
 #[test]

@@ -91,9 +91,25 @@ struct Laws<'a> {
 }
 
 impl Laws<'_> {
-    /// Every update of one law over the recording, in contact, as a `Tracker` would call it.
+    /// Every update of one law.
     fn law<L: Law>(&mut self, name: &str, window: u16, law: Result<L, ConfigError>) -> Result<(), Fault> {
         let law = law.map_err(unsound)?;
+        self.walk(name, window, &law, |gauge, state, recent| {
+            let mut update = Update { law: black_box(&law), state, recent, step: MaybeUninit::uninit() };
+            gauge.pass(&mut update)?;
+            black_box(&update.step);
+            Ok(())
+        })
+    }
+
+    /// One pass for each sample of the recording that is in contact, as a `Tracker` would call `law`.
+    fn walk<L: Law>(
+        &mut self,
+        name: &str,
+        window: u16,
+        law: &L,
+        mut pass: impl FnMut(&mut Gauge, &mut L::State, Recent<'_>) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
         let ring = usize::from(window) * size_of::<Observation>();
         self.gauge.case(name, window, size_of::<L::State>(), ring)?;
         let mut stream = Stream::<RING>::new(self.recording.config.stream).map_err(unsound)?;
@@ -104,18 +120,12 @@ impl Laws<'_> {
                 state = law.start();
             }
             if event.reading.contact && !event.reading.restarted {
-                let recent = stream.recent();
-                let mut update =
-                    Update { law: black_box(&law), state: &mut state, recent, step: MaybeUninit::uninit() };
-                self.gauge.pass(&mut update)?;
-                black_box(&update.step);
+                pass(self.gauge, &mut state, stream.recent())?;
             }
         }
         Ok(())
     }
-}
 
-impl Laws<'_> {
     /// What moves the estimate, without the interval and the rest that tells of its quality: the job that others do, too.
     fn estimate_alone(&mut self) -> Result<(), Fault> {
         let config = &self.recording.config;
@@ -145,21 +155,9 @@ impl Laws<'_> {
         law: &L,
         mut learn: impl FnMut(&mut L::State, Recent<'_>),
     ) -> Result<(), Fault> {
-        let ring = usize::from(window) * size_of::<Observation>();
-        self.gauge.case(name, window, size_of::<L::State>(), ring)?;
-        let mut stream = Stream::<RING>::new(self.recording.config.stream).map_err(unsound)?;
-        let mut state = law.start();
-        for &sample in self.recording.samples {
-            let event = stream.update(sample).map_err(|_| "a sample was rejected")?;
-            if event.lost {
-                state = law.start();
-            }
-            if event.reading.contact && !event.reading.restarted {
-                let recent = stream.recent();
-                self.gauge.pass(&mut Learn { learn: || learn(black_box(&mut state), recent) })?;
-            }
-        }
-        Ok(())
+        self.walk(name, window, law, |gauge, state, recent| {
+            gauge.pass(&mut Learn { learn: || learn(black_box(state), recent) })
+        })
     }
 }
 

@@ -11,7 +11,7 @@ use semihosting::io::Write;
 use stm32f4xx_hal::pac;
 
 use super::board::start_clock;
-use super::input::Fault;
+use super::input::{self, Fault, Recording};
 
 /// What can be measured. It runs between the two labels by a call without inlining, so that the call is the same for all.
 pub trait Work {
@@ -141,5 +141,16 @@ impl Gauge {
 
     fn write(&mut self, line: &str) -> Result<(), Fault> {
         self.out.write_all(line.as_bytes()).map_err(|_| "cannot write profile.out")
+    }
+}
+
+/// All of an image: `cases` over the recording, which the folder it runs in holds.
+pub fn measure(cases: fn(&Recording, Gauge) -> Result<(), Fault>) -> ! {
+    match input::read().and_then(|recording| Gauge::start().and_then(|gauge| cases(&recording, gauge))) {
+        Ok(()) => semihosting::process::exit(0),
+        Err(fault) => {
+            semihosting::eprintln!("{fault}");
+            semihosting::process::exit(1)
+        }
     }
 }
