@@ -279,8 +279,7 @@ impl Model {
         let late = values[index::EFFORT_TIMING];
         let mut acting = self.at(Place::Drive, values, trial);
         acting.sort_by_key(|(term, _)| term.effect.card().stage);
-        let limit = acting.iter().filter_map(|(term, values)| term.effect.effort_limit(term.form, values));
-        let cut = limit.reduce(f64::min).and_then(|limit| Some(track.command.as_ref()?.cut(limit)));
+        let cut = self.effort_limit(values, trial).and_then(|limit| Some(track.command.as_ref()?.cut(limit)));
         let (effort, rate) = cut.as_ref().map_or((effort, rate), |[effort, rate]| (effort, rate));
         let mut memories: Vec<Memory> = vec![Memory::default(); acting.len()];
         let (mut commanded, mut transmitted) = (0.0, 0.0);
@@ -316,6 +315,13 @@ impl Model {
             rest.iter_mut().for_each(|rest| *rest *= share);
         }
         rest
+    }
+
+    /// The greatest effort that the drive gives in trial `trial`, where a term says so.
+    #[must_use]
+    pub fn effort_limit(&self, values: &[f64], trial: usize) -> Option<f64> {
+        let acting = self.at(Place::Drive, values, trial);
+        acting.iter().filter_map(|(term, values)| term.effect.effort_limit(term.form, values)).reduce(f64::min)
     }
 
     /// The terms at `place` with their values in trial `trial`.

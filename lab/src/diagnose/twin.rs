@@ -101,16 +101,39 @@ impl Studio {
             };
             let effort = fine.effort.as_ref().filter(|_| model.drive).map(|effort| {
                 let on_tool = borne.as_ref().or(fine.force.as_ref());
-                let rest = model.balance(values, trial, fine, |at| on_tool.map_or(0.0, |force| force[at]));
-                let exact: Vec<f64> = effort.iter().zip(&rest).map(|(effort, rest)| effort - rest).collect();
-                // A row's effort is held to the next row: what it shows is the mean of the two.
-                let next = |at: usize| exact[(at + 1).min(exact.len() - 1)];
-                (0..exact.len()).map(|at| 0.5 * (exact[at] + next(at))).collect()
+                let on_tool = |at: usize| on_tool.map_or(0.0, |force| force[at]);
+                match model.effort_limit(values, trial).zip(self.raws[trial].effort.as_ref()) {
+                    Some((limit, commands)) => self.commanded(model, values, trial, on_tool, (limit, commands)),
+                    None => {
+                        let rest = model.balance(values, trial, fine, on_tool);
+                        let exact: Vec<f64> = effort.iter().zip(&rest).map(|(effort, rest)| effort - rest).collect();
+                        (0..exact.len()).map(|at| held(&exact, at)).collect()
+                    }
+                }
             });
             (reading, effort)
         };
         let (force, effort) = self.fine.par_iter().enumerate().map(tell).unzip();
         Truth { force, effort }
+    }
+
+    /// Commands, row by row, of a drive that gives no more than a limit. What they were beyond it is in no smoothed effort,
+    /// so they are those recorded, less what is left of the balance where they are within it. A motion seen more sharply
+    /// than the drive is looked at asks for efforts that no drive could give.
+    fn commanded(
+        &self,
+        model: &Model,
+        values: &[f64],
+        trial: usize,
+        on_tool: impl Fn(usize) -> f64,
+        (limit, commands): (f64, &Vec<f64>),
+    ) -> Vec<f64> {
+        let calm = Track::of(&self.raws[trial], &self.drive_lens.every_row());
+        let rest = model.balance(values, trial, &calm, on_tool);
+        let command = |(at, command): (usize, &f64)| {
+            if command.abs() > limit { *command } else { command - held(&rest, at) }
+        };
+        commands.iter().enumerate().map(command).collect()
     }
 
     /// Twin `number` of `truth`.
@@ -217,6 +240,11 @@ impl Studio {
             })
             .collect()
     }
+}
+
+/// What a row shows of an effort that is held to the next row: the mean of the two.
+fn held(values: &[f64], at: usize) -> f64 {
+    0.5 * (values[at] + values[(at + 1).min(values.len() - 1)])
 }
 
 /// Stretches of at least `least` rows in which a stepping encoder does not step.

@@ -78,15 +78,21 @@ fn a_mass_beyond_the_force_sensor_through_a_coarser_encoder() {
 
 #[test]
 fn play_before_the_pad() {
-    // Told from a smoothed motion the gap comes out a fifth smaller: its corners are lost.
-    let case = Case::led(BENCH, "[[effect]]\nname = \"lost_motion\"\nplay_m = 0.0002\n");
+    // A law that takes the smoothed motion for the motion finds less play and leaves a rest at each reversal.
+    let case = Case::led(Size { rate_hz: 1000.0, ..BENCH }, "[[effect]]\nname = \"lost_motion\"\nplay_m = 0.0002\n");
     finds(&case, "lost_motion", &[("play", 0.0002)]);
 }
 
 #[test]
 fn a_drive_at_the_end_of_its_effort() {
-    let case = Case::new(&driven(0), driven, "[[effect]]\nname = \"effort_saturation\"\nlimit_n = 2.0\n");
-    finds(&case, "effort_saturation", &[("limit", 2.0)]);
+    // Each step of a coarse encoder makes the controller kick, and the end of the range cuts each kick.
+    let kicked = |trial: usize| {
+        let other = if trial == 0 { "frequency_hz = 6.1" } else { "frequency_hz = 7.3" };
+        let coarse = driven(1).replace("resolution_m = 5e-6", "resolution_m = 5e-5").replace("= 400\n", "= 1000\n");
+        coarse.replace("frequency_hz = 7.3", other)
+    };
+    let case = Case::new(&kicked(0), kicked, "[[effect]]\nname = \"effort_saturation\"\nlimit_n = 3.0\n");
+    finds(&case, "effort_saturation", &[("limit", 3.0)]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Play between the position sensor and the surface.
 
+use crate::effects::touch::{gate, ramp};
 use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch, geometric};
 use crate::rig::Word;
 
@@ -32,19 +33,38 @@ impl Effect for LostMotion {
     }
 
     fn touch(&self, _form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
-        // memory: tip position, whether it is known, sensor position an instant ago.
+        // memory: tip position, whether it is known, sensor position an instant ago, where the tip last rested, velocity an
+        // instant ago.
         let half = 0.5 * values[0];
         if memory[1] == 0.0 {
-            (memory[0], memory[1], memory[2]) = (touch.position, 1.0, touch.position);
+            (memory[0], memory[1], memory[2], memory[3]) = (touch.position, 1.0, touch.position, touch.position);
         }
         let before = memory[0];
         memory[0] = before.max(touch.position - half).min(touch.position + half);
-        // A motion that takes up the play within one step follows for the rest of it. Both are ways over the step: against
-        // velocity times step a tip without play would fall short wherever the motion speeds up.
         let whole = touch.position - memory[2];
         memory[2] = touch.position;
+        if memory[0] == before || touch.velocity * memory[4] < 0.0 {
+            memory[3] = memory[0];
+        }
+        memory[4] = touch.velocity;
+        if touch.blur > 0.0 {
+            follow(half, memory[3], touch);
+            return;
+        }
+        // A motion that takes up the play within one step follows for the rest of it. Both are ways over the step: against
+        // velocity times step a tip without play would fall short wherever the motion speeds up.
         let share = if whole != 0.0 { ((memory[0] - before) / whole).clamp(0.0, 1.0) } else { 1.0 };
         touch.velocity *= share;
         touch.position = memory[0];
     }
+}
+
+/// A tip that rested at `rest` until the play of `half` either way was taken up, as a smoothed motion shows it: the velocity
+/// does not jump there but rises over the blur. A blur longer than the play takes is all of the play, so that none is off.
+fn follow(half: f64, rest: f64, touch: &mut Touch) {
+    let width = (touch.velocity.abs() * touch.blur).min(half);
+    let way = touch.velocity.signum();
+    let taken = way * (touch.position - rest) - half;
+    touch.position = rest + way * ramp(taken, width);
+    touch.velocity *= gate(taken, width);
 }
