@@ -102,27 +102,36 @@ pub trait Shape: Debug {
     fn form(&self) -> &'static str;
     /// Its possible sizes.
     fn sizes(&self) -> Sizes;
-    /// Adds it, of a `size` above zero, to the physics of a trial.
-    fn put(&self, size: f64, physics: &mut Physics);
     /// Its true values at `size`.
     fn parameters(&self, size: f64) -> Vec<Parameter>;
 }
 
+/// A shape that our own simulation can act out.
+pub trait Acting: Shape {
+    /// Adds it, of a `size` above zero, to the physics of a trial.
+    fn put(&self, size: f64, physics: &mut Physics);
+}
+
 /// The effect `name` with a shape at random; none where the name is unknown.
 #[must_use]
-pub fn draw(name: &str, scene: &Scene, chance: &Chance) -> Option<Box<dyn Shape>> {
-    // What is asked for first must not move what others draw.
-    let mut own = chance.clone();
-    own.set_stream(64 + name.bytes().fold(0u64, |sum, byte| sum.wrapping_mul(131).wrapping_add(u64::from(byte))));
-    own.random::<u64>();
-    let chance = &mut own;
+pub fn draw(name: &str, scene: &Scene, chance: &Chance) -> Option<Box<dyn Acting>> {
+    let chance = &mut own_chance(name, chance);
     contact(name, scene, chance)
         .or_else(|| drive(name, scene, chance))
         .or_else(|| sensor(name, scene, chance))
         .or_else(|| outside(name, scene, chance))
 }
 
-fn contact(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Shape>> {
+/// The random numbers of the effect `name` alone: what is asked for first must not move what others draw.
+#[must_use]
+pub fn own_chance(name: &str, chance: &Chance) -> Chance {
+    let mut own = chance.clone();
+    own.set_stream(64 + name.bytes().fold(0u64, |sum, byte| sum.wrapping_mul(131).wrapping_add(u64::from(byte))));
+    own.random::<u64>();
+    own
+}
+
+fn contact(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
     Some(match name {
         "nonlinear_stiffness" => Box::new(elastic::Nonlinear::draw(scene, chance)),
         "layered_stiffness" => Box::new(elastic::Layered::draw(scene, chance)),
@@ -140,7 +149,7 @@ fn contact(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Sha
     })
 }
 
-fn drive(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Shape>> {
+fn drive(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
     Some(match name {
         "coulomb_friction" => Box::new(friction::Coulomb::draw(scene, chance)),
         "stribeck_friction" => Box::new(friction::Slowing::draw(scene, chance)),
@@ -155,7 +164,7 @@ fn drive(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Shape
     })
 }
 
-fn sensor(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Shape>> {
+fn sensor(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
     Some(match name {
         "force_bias" => Box::new(offset::ForceBias::draw(scene, chance)),
         "force_drift" => Box::new(offset::ForceDrift::draw(scene, chance)),
@@ -169,7 +178,7 @@ fn sensor(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Shap
     })
 }
 
-fn outside(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Shape>> {
+fn outside(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
     Some(match name {
         "force_resonance" => Box::new(ringing::Resonance::draw(chance)),
         "effort_crosstalk" => Box::new(ringing::Crosstalk::draw(scene)),

@@ -5,6 +5,7 @@
 //! closed loop, and apart from them the [`Truth`]. How large an effect is, is told by its strength: the
 //! RMS of what the nominal physics cannot take up, over the floor of the sensor.
 
+pub mod bench;
 pub mod case;
 pub mod chance;
 pub mod contact;
@@ -24,7 +25,9 @@ pub mod simulate;
 pub mod strength;
 pub mod truth;
 pub mod wish;
+pub mod world;
 
-pub use case::{Case, draw};
+pub use case::{Case, draw, draw_in};
 pub use truth::Truth;
 pub use wish::{What, Wish};
+pub use world::{Source, World};

@@ -4,7 +4,7 @@ use anyhow::{Result, bail, ensure};
 use rand::RngExt;
 
 use crate::chance::{Chance, log_uniform, pick};
-use crate::effect::name::{ALL, Known, known};
+use crate::effect::name::Known;
 use crate::reference;
 use crate::scale::Scale;
 use crate::sensors::Grade;
@@ -41,23 +41,24 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Draws what `wish` leaves open.
+    /// Draws what `wish` leaves open, from the effects `offered`.
     ///
     /// # Errors
-    /// The wish names an unknown effect, or one that its other choices hide.
-    pub fn draw(wish: &Wish, chance: &mut Chance) -> Result<Self> {
+    /// The wish names an effect that is not offered, or one that its other choices hide.
+    pub fn draw(wish: &Wish, offered: &'static [Known], chance: &mut Chance) -> Result<Self> {
         let what = match &wish.what {
             Some(what) => what.clone(),
-            None => any(chance),
+            None => any(offered, chance),
         };
-        let asked = names(&what)?;
+        let asked = names(&what, offered)?;
         let needs_effort = asked.iter().any(|known| known.needs_effort);
         let one_sided = asked.iter().any(|known| !known.bilateral);
         ensure!(!(needs_effort && wish.effort == Some(false)), "{} shows in the effort alone", listed(&asked));
         ensure!(!(one_sided && wish.bilateral == Some(true)), "{} needs a surface that can be left", listed(&asked));
         let (often, seldom) = (chance.random_bool(0.8), chance.random_bool(0.12));
         let effort = wish.effort.unwrap_or(needs_effort || often);
-        let bilateral = wish.bilateral.unwrap_or(seldom && !one_sided);
+        let enough = suited(offered, &what, effort, true).len() >= wanted(&what).0;
+        let bilateral = wish.bilateral.unwrap_or(seldom && !one_sided && enough);
         let grade = wish.sensors.unwrap_or(pick(chance, &[Grade::Coarse, Grade::Fine]));
         let rich = chance.random_bool(0.75);
         let reference = wish.reference.unwrap_or(if rich { reference::Kind::Rich } else { reference::Kind::Poor });
@@ -65,20 +66,41 @@ impl Plan {
         let half = chance.random_bool(0.5);
         let stated = (chance.random_bool(2.0 / 3.0), chance.random_bool(0.5));
         let control_stated = chance.random_bool(0.7);
-        let effects = concealed(&what, asked, effort, bilateral, chance)?;
+        let suited = suited(offered, &what, effort, bilateral);
+        let effects = concealed(&what, asked, &suited, chance)?;
         let kind = kind(&what);
         let exact = wish.exact.unwrap_or(half);
         Ok(Self { kind, effects, grade, reference, effort, bilateral, scale, exact, stated, control_stated })
     }
 }
 
-fn any(chance: &mut Chance) -> What {
+fn any(offered: &[Known], chance: &mut Chance) -> What {
+    let outside = offered.iter().any(|known| !known.listed);
     match chance.random_range(0..20) {
         0..6 => What::Nothing,
         6..15 => What::Single { name: None, strength: None },
         15..18 => What::Pair { names: None, strength: None },
-        _ => What::Outside { name: None, strength: None },
+        _ if outside => What::Outside { name: None, strength: None },
+        _ => What::Single { name: None, strength: None },
     }
+}
+
+/// How many effects `what` asks for, whether the list holds them, and their strength.
+fn wanted(what: &What) -> (usize, bool, Option<f64>) {
+    match what {
+        What::Nothing => (0, true, None),
+        What::Single { strength, .. } => (1, true, *strength),
+        What::Pair { strength, .. } => (2, true, *strength),
+        What::Outside { strength, .. } => (1, false, *strength),
+    }
+}
+
+/// Which of those `offered` a recording of this kind can show.
+fn suited(offered: &'static [Known], what: &What, effort: bool, bilateral: bool) -> Vec<&'static Known> {
+    let (_, inside, _) = wanted(what);
+    let suits =
+        |known: &&Known| known.listed == inside && (effort || !known.needs_effort) && (!bilateral || known.bilateral);
+    offered.iter().filter(suits).collect()
 }
 
 fn kind(what: &What) -> Kind {
@@ -94,16 +116,16 @@ fn listed(asked: &[&Known]) -> String {
     asked.iter().map(|known| known.name).collect::<Vec<_>>().join(" with ")
 }
 
-fn names(what: &What) -> Result<Vec<&'static Known>> {
-    let (asked, inside): (Vec<&String>, bool) = match what {
-        What::Nothing => (Vec::new(), true),
-        What::Single { name, .. } => (name.iter().collect(), true),
-        What::Pair { names, .. } => (names.iter().flatten().collect(), true),
-        What::Outside { name, .. } => (name.iter().collect(), false),
+fn names(what: &What, offered: &'static [Known]) -> Result<Vec<&'static Known>> {
+    let (_, inside, _) = wanted(what);
+    let asked: Vec<&String> = match what {
+        What::Nothing => Vec::new(),
+        What::Single { name, .. } | What::Outside { name, .. } => name.iter().collect(),
+        What::Pair { names, .. } => names.iter().flatten().collect(),
     };
     let mut found = Vec::new();
     for name in asked {
-        match known(name) {
+        match offered.iter().find(|known| known.name == name) {
             Some(known) if known.listed == inside => found.push(known),
             Some(_) if inside => bail!("{name} is outside of the list"),
             Some(_) => bail!("{name} is an effect of the list"),
@@ -124,22 +146,18 @@ fn fit(one: &Known, other: &Known) -> bool {
 fn concealed(
     what: &What,
     mut asked: Vec<&'static Known>,
-    effort: bool,
-    bilateral: bool,
+    suited: &[&'static Known],
     chance: &mut Chance,
 ) -> Result<Vec<(&'static Known, f64)>> {
-    let (count, inside, strength) = match what {
-        What::Nothing => (0, true, None),
-        What::Single { strength, .. } => (1, true, *strength),
-        What::Pair { strength, .. } => (2, true, *strength),
-        What::Outside { strength, .. } => (1, false, *strength),
-    };
-    let suits =
-        |known: &&Known| known.listed == inside && (effort || !known.needs_effort) && (!bilateral || known.bilateral);
-    let all: Vec<&'static Known> = ALL.iter().filter(suits).collect();
+    let (count, _, strength) = wanted(what);
+    let enough = |one: &Known| count < 2 || suited.iter().any(|other| fit(one, other));
+    ensure!(
+        asked.len() == count || suited.iter().any(|one| enough(one)),
+        "nothing that is offered suits such a recording"
+    );
     while asked.len() < count {
-        let one = pick(chance, &all);
-        if asked.iter().all(|other| fit(one, other)) {
+        let one = pick(chance, suited);
+        if asked.iter().all(|other| fit(one, other)) && enough(one) {
             asked.push(one);
         }
     }

@@ -1,5 +1,7 @@
 //! From a strength to the size that has it.
 
+use anyhow::Result;
+
 use crate::effect::Sizes;
 
 /// What a size came to.
@@ -21,10 +23,13 @@ const CLOSE: f64 = 0.04;
 
 /// Finds the size whose strength is `target`, by the secant between the nearest misses in logarithms; where no possible
 /// size has it, the nearest that was met. `measure` returns the strength, infinite where the size is impossible.
-pub fn find<T>(target: f64, sizes: Sizes, mut measure: impl FnMut(f64) -> (f64, T)) -> Found<T> {
+///
+/// # Errors
+/// Those of `measure`.
+pub fn find<T>(target: f64, sizes: Sizes, mut measure: impl FnMut(f64) -> Result<(f64, T)>) -> Result<Found<T>> {
     let (mut below, mut above): (Option<Miss>, Option<Miss>) = (None, None);
     let mut size = sizes.first;
-    let (ratio, left) = measure(size);
+    let (ratio, left) = measure(size)?;
     let mut best = Found { size, ratio, left };
     let mut ratio = best.ratio;
     for round in 0..16 {
@@ -41,13 +46,13 @@ pub fn find<T>(target: f64, sizes: Sizes, mut measure: impl FnMut(f64) -> (f64, 
             break;
         }
         size = next(target, below, above, round).clamp(sizes.smallest, sizes.largest);
-        let (met, left) = measure(size);
+        let (met, left) = measure(size)?;
         ratio = met;
         if miss(ratio, target) < miss(best.ratio, target) {
             best = Found { size, ratio, left };
         }
     }
-    best
+    Ok(best)
 }
 
 /// Distance in logarithms, for which nothing and the impossible are infinitely far.
@@ -76,13 +81,14 @@ mod tests {
     #[test]
     fn finds_a_size_on_any_power_and_stops_at_the_largest() {
         for power in [0.5, 1.0, 2.0] {
-            let found = find(3.0, Sizes::new(1.0, 1e6), |size| (0.01 * size.powf(power), ()));
+            let found = find(3.0, Sizes::new(1.0, 1e6), |size| Ok((0.01 * size.powf(power), ()))).unwrap();
             assert!((found.ratio / 3.0).ln().abs() < CLOSE, "{power}: {found:?}");
         }
-        let capped = find(3.0, Sizes::new(1.0, 10.0), |size| (0.01 * size, ()));
+        let capped = find(3.0, Sizes::new(1.0, 10.0), |size| Ok((0.01 * size, ()))).unwrap();
         assert_eq!((capped.size, capped.ratio), (10.0, 0.1));
         let impossible =
-            find(3.0, Sizes::new(1.0, 1e6), |size| (if size > 7.0 { f64::INFINITY } else { size * 0.1 }, ()));
+            find(3.0, Sizes::new(1.0, 1e6), |size| Ok((if size > 7.0 { f64::INFINITY } else { size * 0.1 }, ())))
+                .unwrap();
         assert!((5.0..=7.0).contains(&impossible.size), "{impossible:?}");
     }
 }

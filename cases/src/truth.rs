@@ -7,6 +7,7 @@ use crate::nominal::Nominal;
 use crate::reference;
 use crate::scale::Scale;
 use crate::sensors::{Grade, Sensors};
+use crate::world::Source;
 
 /// What a case is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -59,6 +60,8 @@ pub struct TrueEffect {
 /// The answers to one case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Truth {
+    /// Whose simulation made it.
+    pub source: Source,
     /// Of all cases.
     pub seed: u64,
     /// Of this one.

@@ -4,7 +4,7 @@ use palpate_cases::chance::{Stream, stream};
 use palpate_cases::contact::Contact;
 use palpate_cases::drive::Drive;
 use palpate_cases::effect::name::ALL;
-use palpate_cases::effect::{self, Scene, Shape};
+use palpate_cases::effect::{self, Acting, Scene};
 use palpate_cases::nominal::{Control, Nominal};
 use palpate_cases::physics::Physics;
 use palpate_cases::reference::{self, Kind};
@@ -186,12 +186,12 @@ fn backlash_lets_the_motor_move_alone_through_its_gap() {
     assert!(drive.motor.position - drive.tool.position < 0.51 * gap);
 }
 
-fn any(name: &str) -> Box<dyn Shape> {
+fn any(name: &str) -> Box<dyn Acting> {
     effect::draw(name, &scene(), &stream(9, 0, Stream::Shape)).unwrap()
 }
 
 /// Force over a slow path of depths.
-fn press(shape: &dyn Shape, size: f64, depths: &[f64], seconds: f64) -> Vec<f64> {
+fn press(shape: &dyn Acting, size: f64, depths: &[f64], seconds: f64) -> Vec<f64> {
     let mut physics = Physics::new(RIG, 0, DT);
     shape.put(size, &mut physics);
     let steps = (seconds / DT) as usize;

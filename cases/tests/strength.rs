@@ -2,7 +2,7 @@
 
 use palpate_cases::chance::{Stream, stream};
 use palpate_cases::effect::delay::ChannelDelay;
-use palpate_cases::effect::{Shape, name};
+use palpate_cases::effect::{Acting, name};
 use palpate_cases::nominal::{Control, Nominal};
 use palpate_cases::physics::Physics;
 use palpate_cases::reference::{self, Kind};

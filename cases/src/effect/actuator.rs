@@ -1,6 +1,6 @@
 //! What becomes of the effort before it acts: `effort_saturation`, `effort_lag`. The recording holds the command.
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::physics::Physics;
 use crate::scale::Unit;
 
@@ -45,12 +45,14 @@ impl Shape for EffortSaturation {
         Sizes::new(0.3, 3.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.clip = Some(Clip { limit: self.limit(size) });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("limit", self.limit(size), Unit::Force)]
+    }
+}
+
+impl Acting for EffortSaturation {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.drive.clip = Some(Clip { limit: self.limit(size) });
     }
 }
 
@@ -85,11 +87,13 @@ impl Shape for EffortLag {
         Sizes { smallest: 1.5e-3, first: 2e-3, largest: 0.03 }
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.lag = Some(Lag { time: size, effort: 0.0 });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("time_constant", size, Unit::Time)]
+    }
+}
+
+impl Acting for EffortLag {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.drive.lag = Some(Lag { time: size, effort: 0.0 });
     }
 }

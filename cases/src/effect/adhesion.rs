@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -59,15 +59,17 @@ impl Shape for Adhesion {
         Sizes::new(1.0, 50.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (length, snap) = (self.length, self.snap);
-        physics.contact.neck = Some(Neck { pull: size * self.unit, length, snap, flow: 0.0, formed: false });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("pull_off", size * self.unit, Unit::Force),
             Parameter::new("neck_length", self.length * self.snap, Unit::Length),
         ]
+    }
+}
+
+impl Acting for Adhesion {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (length, snap) = (self.length, self.snap);
+        physics.contact.neck = Some(Neck { pull: size * self.unit, length, snap, flow: 0.0, formed: false });
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -55,13 +55,15 @@ impl Shape for Teeth {
         Sizes::new(1.0, 25.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (amplitude, wave) = (size * self.unit, TAU / self.length);
-        physics.drive.cogging = Some(Cogging { amplitude, wave, phase: self.phase, second: self.second });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let amplitude = Parameter::new("amplitude", size * self.unit, Unit::Force);
         vec![amplitude, Parameter::new("period", self.length, Unit::Length)]
+    }
+}
+
+impl Acting for Teeth {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (amplitude, wave) = (size * self.unit, TAU / self.length);
+        physics.drive.cogging = Some(Cogging { amplitude, wave, phase: self.phase, second: self.second });
     }
 }

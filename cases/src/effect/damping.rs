@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -51,16 +51,18 @@ impl Shape for HuntCrossley {
         Sizes::new(0.3, 40.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (depth, exponent) = (self.depth, self.exponent);
-        physics.contact.depth_damping = Some(DepthDamping { alpha: size * self.unit, depth, exponent });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("alpha", size * self.unit, Unit::DampingGradient),
             Parameter::new("exponent", self.exponent, Unit::One),
         ]
+    }
+}
+
+impl Acting for HuntCrossley {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (depth, exponent) = (self.depth, self.exponent);
+        physics.contact.depth_damping = Some(DepthDamping { alpha: size * self.unit, depth, exponent });
     }
 }
 
@@ -107,15 +109,17 @@ impl Shape for Quadratic {
         Sizes::new(0.3, 40.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (speed, exponent) = (self.speed, self.exponent);
-        physics.contact.drag = Some(Drag { coefficient: size * self.unit, speed, exponent });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("coefficient", size * self.unit, Unit::Drag),
             Parameter::new("exponent", self.exponent, Unit::One),
         ]
+    }
+}
+
+impl Acting for Quadratic {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (speed, exponent) = (self.speed, self.exponent);
+        physics.contact.drag = Some(Drag { coefficient: size * self.unit, speed, exponent });
     }
 }

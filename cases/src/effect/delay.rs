@@ -1,6 +1,6 @@
 //! A sensor that is late: `channel_delay`, `force_lag`, and the mass beyond it, `tool_inertia`.
 
-use super::{Parameter, Shape, Sizes};
+use super::{Acting, Parameter, Shape, Sizes};
 use crate::physics::Physics;
 use crate::scale::Unit;
 
@@ -47,12 +47,14 @@ impl Shape for ChannelDelay {
         Sizes { smallest: 2.5e-4, first: 5e-4, largest: 0.01 }
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.gauge.delay = Some(Delay::new(size, physics.step));
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("delay", size, Unit::Time)]
+    }
+}
+
+impl Acting for ChannelDelay {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.gauge.delay = Some(Delay::new(size, physics.step));
     }
 }
 
@@ -69,12 +71,14 @@ impl Shape for ForceLag {
         Sizes { smallest: 2.5e-4, first: 5e-4, largest: 0.03 }
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.gauge.lag_s = size;
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("time_constant", size, Unit::Time)]
+    }
+}
+
+impl Acting for ForceLag {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.gauge.lag_s = size;
     }
 }
 
@@ -94,12 +98,14 @@ impl Shape for ToolInertia {
         Sizes::new(0.03, 0.7)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.gauge.inertia = size * self.mass;
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("mass", size * self.mass, Unit::Mass)]
+    }
+}
+
+impl Acting for ToolInertia {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.gauge.inertia = size * self.mass;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, sign};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -80,15 +80,6 @@ impl Shape for Nonlinear {
         Sizes::new(0.1, largest)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let depth = self.depth;
-        physics.contact.elastic = match self.form {
-            0 => Elastic::Power { depth, exponent: self.exponent(size) },
-            1 => Elastic::Cubic { depth: depth / size.sqrt() },
-            _ => Elastic::Exponential { depth: depth / size },
-        };
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let (k, d) = (self.stiffness, self.depth);
         match self.form {
@@ -102,6 +93,17 @@ impl Shape for Nonlinear {
             1 => vec![Parameter::new("hardening", k * size / (d * d), Unit::Hardening)],
             _ => vec![Parameter::new("stiffening", size / d, Unit::PerLength)],
         }
+    }
+}
+
+impl Acting for Nonlinear {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let depth = self.depth;
+        physics.contact.elastic = match self.form {
+            0 => Elastic::Power { depth, exponent: self.exponent(size) },
+            1 => Elastic::Cubic { depth: depth / size.sqrt() },
+            _ => Elastic::Exponential { depth: depth / size },
+        };
     }
 }
 
@@ -154,16 +156,18 @@ impl Shape for Layered {
         Sizes::new(0.1, 5.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let extra = self.second(size) - self.stiffness;
-        physics.contact.layer = Some(Layer { depth: self.depth, width: 0.03 * self.depth, extra });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("layer_depth", self.depth, Unit::Length),
             Parameter::new("second_stiffness", self.second(size), Unit::Stiffness),
         ]
+    }
+}
+
+impl Acting for Layered {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let extra = self.second(size) - self.stiffness;
+        physics.contact.layer = Some(Layer { depth: self.depth, width: 0.03 * self.depth, extra });
     }
 }
 
@@ -209,16 +213,18 @@ impl Shape for Buckling {
         Sizes::new(1.0, 12.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (depth, width) = (self.depth, self.width);
-        physics.contact.bump = Some(Bump { depth, width, height: size * self.unit });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("height", size * self.unit, Unit::Force),
             Parameter::new("depth", self.depth, Unit::Length),
             Parameter::new("width", self.width, Unit::Length),
         ]
+    }
+}
+
+impl Acting for Buckling {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (depth, width) = (self.depth, self.width);
+        physics.contact.bump = Some(Bump { depth, width, height: size * self.unit });
     }
 }

@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::spots::Spots;
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, log_uniform};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -75,10 +75,6 @@ impl Shape for Coulomb {
         Sizes::new(1.0, 25.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.friction.coulomb = self.levels(size);
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let (forward, backward) = self.levels(size);
         vec![
@@ -86,6 +82,12 @@ impl Shape for Coulomb {
             Parameter::new("coulomb_forward", forward, Unit::Force),
             Parameter::new("coulomb_backward", backward, Unit::Force),
         ]
+    }
+}
+
+impl Acting for Coulomb {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.drive.friction.coulomb = self.levels(size);
     }
 }
 
@@ -117,12 +119,6 @@ impl Shape for Slowing {
         Sizes::new(1.0, 30.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let level = size * self.unit;
-        let (kinetic, extra) = (self.ratio * level, (1.0 - self.ratio) * level);
-        physics.drive.friction.stribeck = Some(Stribeck { kinetic, extra, speed: self.speed, exponent: self.exponent });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let level = size * self.unit;
         vec![
@@ -130,6 +126,14 @@ impl Shape for Slowing {
             Parameter::new("coulomb", self.ratio * level, Unit::Force),
             Parameter::new("stribeck_velocity", self.speed, Unit::Velocity),
         ]
+    }
+}
+
+impl Acting for Slowing {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let level = size * self.unit;
+        let (kinetic, extra) = (self.ratio * level, (1.0 - self.ratio) * level);
+        physics.drive.friction.stribeck = Some(Stribeck { kinetic, extra, speed: self.speed, exponent: self.exponent });
     }
 }
 
@@ -146,11 +150,13 @@ impl Shape for LoadDependent {
         Sizes::new(0.05, 0.6)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.friction.load = size;
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("coefficient", size, Unit::One)]
+    }
+}
+
+impl Acting for LoadDependent {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.drive.friction.load = size;
     }
 }

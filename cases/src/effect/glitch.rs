@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, sign};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -47,6 +47,12 @@ impl Shape for LooseContact {
         Sizes::new(1.0, 10.0)
     }
 
+    fn parameters(&self, size: f64) -> Vec<Parameter> {
+        vec![Parameter::new("height", size * self.unit, Unit::Force)]
+    }
+}
+
+impl Acting for LooseContact {
     fn put(&self, size: f64, physics: &mut Physics) {
         let mut chance = Chance::seed_from_u64(self.seed.wrapping_add(physics.trial as u64));
         let all = (0..15)
@@ -57,9 +63,5 @@ impl Shape for LooseContact {
             })
             .collect();
         physics.gauge.glitches = Some(Glitches { all });
-    }
-
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![Parameter::new("height", size * self.unit, Unit::Force)]
     }
 }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, sign};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -48,13 +48,15 @@ impl Shape for GravityLoad {
         Sizes::new(1.0, 60.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.gravity = Some(Gravity { weight: size * self.unit, angle: self.angle });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let weight = Parameter::new("load", size * self.unit, Unit::Force);
         let zero = self.angle.map(|(_, zero)| Parameter::new("angle_zero", zero, Unit::Angle));
         std::iter::once(weight).chain(zero).collect()
+    }
+}
+
+impl Acting for GravityLoad {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.drive.gravity = Some(Gravity { weight: size * self.unit, angle: self.angle });
     }
 }

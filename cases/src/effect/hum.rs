@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, pick};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -58,15 +58,17 @@ impl Shape for MainsHum {
         Sizes::new(1.0, 80.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (amplitude, rate, phase) = (size * self.unit, TAU * self.frequency, self.phases[physics.trial % 2]);
-        physics.gauge.hum = Some(Hum { amplitude, rate, phase, order: self.order, share: self.share });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("amplitude", size * self.unit, Unit::Force),
             Parameter::new("frequency", self.frequency, Unit::Frequency),
         ]
+    }
+}
+
+impl Acting for MainsHum {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (amplitude, rate, phase) = (size * self.unit, TAU * self.frequency, self.phases[physics.trial % 2]);
+        physics.gauge.hum = Some(Hum { amplitude, rate, phase, order: self.order, share: self.share });
     }
 }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -99,6 +99,15 @@ impl Shape for Hysteresis {
         Sizes::new(1.0, 30.0)
     }
 
+    fn parameters(&self, size: f64) -> Vec<Parameter> {
+        vec![
+            Parameter::new("amplitude", size * self.unit, Unit::Force),
+            Parameter::new("yield_distance", self.distance, Unit::Length),
+        ]
+    }
+}
+
+impl Acting for Hysteresis {
     fn put(&self, size: f64, physics: &mut Physics) {
         let (height, distance, sharpness) = (size * self.unit, self.distance, self.sharpness);
         physics.contact.hysteresis = Some(if self.bundle {
@@ -108,12 +117,5 @@ impl Shape for Hysteresis {
         } else {
             Loop::BoucWen { height, distance, sharpness, state: 0.0, last: 0.0 }
         });
-    }
-
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![
-            Parameter::new("amplitude", size * self.unit, Unit::Force),
-            Parameter::new("yield_distance", self.distance, Unit::Length),
-        ]
     }
 }

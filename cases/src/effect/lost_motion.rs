@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -54,14 +54,16 @@ impl Shape for LostMotion {
         Sizes::new(1.0, 40.0)
     }
 
+    fn parameters(&self, size: f64) -> Vec<Parameter> {
+        vec![Parameter::new("gap", size * self.unit, Unit::Length)]
+    }
+}
+
+impl Acting for LostMotion {
     fn put(&self, size: f64, physics: &mut Physics) {
         let half = 0.5 * size * self.unit;
         let halves = [half * (1.0 - self.spread), half, half * (1.0 + self.spread)];
         // The tool comes from outside: whatever it pushes lags by half a gap.
         physics.contact.play = Some(Play { halves, behind: [f64::NEG_INFINITY; 3] });
-    }
-
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![Parameter::new("gap", size * self.unit, Unit::Length)]
     }
 }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, sign};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -49,12 +49,14 @@ impl Shape for ForceBias {
         Sizes::new(1.0, 60.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.gauge.offset.get_or_insert_default().bias = size * self.unit;
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("bias", size * self.unit, Unit::Force)]
+    }
+}
+
+impl Acting for ForceBias {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.gauge.offset.get_or_insert_default().bias = size * self.unit;
     }
 }
 
@@ -86,6 +88,17 @@ impl Shape for ForceDrift {
         Sizes::new(1.0, 80.0)
     }
 
+    fn parameters(&self, size: f64) -> Vec<Parameter> {
+        let total = size * self.unit;
+        if self.time > 0.0 {
+            vec![Parameter::new("drift", total, Unit::Force), Parameter::new("time_constant", self.time, Unit::Time)]
+        } else {
+            vec![Parameter::new("rate", total / self.duration, Unit::ForceRate)]
+        }
+    }
+}
+
+impl Acting for ForceDrift {
     fn put(&self, size: f64, physics: &mut Physics) {
         let offset = physics.gauge.offset.get_or_insert_default();
         let total = size * self.unit;
@@ -93,15 +106,6 @@ impl Shape for ForceDrift {
             (offset.drift, offset.time) = (total, self.time);
         } else {
             offset.rate = total / self.duration;
-        }
-    }
-
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        let total = size * self.unit;
-        if self.time > 0.0 {
-            vec![Parameter::new("drift", total, Unit::Force), Parameter::new("time_constant", self.time, Unit::Time)]
-        } else {
-            vec![Parameter::new("rate", total / self.duration, Unit::ForceRate)]
         }
     }
 }

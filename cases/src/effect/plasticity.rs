@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -52,11 +52,6 @@ impl Shape for PlasticSet {
         Sizes::new(1.0, 15.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (share, yield_depth) = (Self::share(size), self.yield_depth);
-        physics.contact.dent = Some(Dent { share, yield_depth, deepest: f64::NEG_INFINITY });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let share = Self::share(size);
         vec![
@@ -64,5 +59,12 @@ impl Shape for PlasticSet {
             Parameter::new("yield_depth", self.yield_depth, Unit::Length),
             Parameter::new("set_at_full_depth", share * (self.depth - self.yield_depth), Unit::Length),
         ]
+    }
+}
+
+impl Acting for PlasticSet {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (share, yield_depth) = (Self::share(size), self.yield_depth);
+        physics.contact.dent = Some(Dent { share, yield_depth, deepest: f64::NEG_INFINITY });
     }
 }

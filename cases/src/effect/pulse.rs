@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -52,14 +52,16 @@ impl Shape for Beating {
         Sizes::new(1.0, 50.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (height, start) = (size * self.unit, self.starts[physics.trial % 2]);
-        physics.contact.heartbeat = Some(Heartbeat { height, period: self.period, start });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let height = Parameter::new("height", size * self.unit, Unit::Force);
         vec![height, Parameter::new("period", self.period, Unit::Time)]
+    }
+}
+
+impl Acting for Beating {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (height, start) = (size * self.unit, self.starts[physics.trial % 2]);
+        physics.contact.heartbeat = Some(Heartbeat { height, period: self.period, start });
     }
 }
 
@@ -108,16 +110,18 @@ impl Shape for Answering {
         Sizes::new(1.0, 40.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let height = size * self.unit;
-        physics.contact.reflex = Some(Reflex { height, wait: self.wait, rise: self.rise, touched: 0.0 });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("height", size * self.unit, Unit::Force),
             Parameter::new("wait", self.wait, Unit::Time),
             Parameter::new("rise", self.rise, Unit::Time),
         ]
+    }
+}
+
+impl Acting for Answering {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let height = size * self.unit;
+        physics.contact.reflex = Some(Reflex { height, wait: self.wait, rise: self.rise, touched: 0.0 });
     }
 }

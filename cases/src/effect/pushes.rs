@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -52,6 +52,12 @@ impl Shape for Pushing {
         Sizes::new(1.0, 20.0)
     }
 
+    fn parameters(&self, size: f64) -> Vec<Parameter> {
+        vec![Parameter::new("height", size * self.unit, Unit::Force)]
+    }
+}
+
+impl Acting for Pushing {
     fn put(&self, size: f64, physics: &mut Physics) {
         let mut chance = Chance::seed_from_u64(self.seed.wrapping_add(physics.trial as u64));
         let start = self.duration * chance.random_range(0.1..0.6);
@@ -63,9 +69,5 @@ impl Shape for Pushing {
             })
             .collect();
         physics.drive.pushes = Some(Pushes { all });
-    }
-
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![Parameter::new("height", size * self.unit, Unit::Force)]
     }
 }

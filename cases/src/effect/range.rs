@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, sign};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -57,12 +57,14 @@ impl Shape for ForceSaturation {
         Sizes::new(0.2, 3.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.gauge.range = Some(Range { limit: self.limit(size), knee: self.knee });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("limit", self.limit(size), Unit::Force)]
+    }
+}
+
+impl Acting for ForceSaturation {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.gauge.range = Some(Range { limit: self.limit(size), knee: self.knee });
     }
 }
 
@@ -89,11 +91,13 @@ impl Shape for ForceGain {
         Sizes::new(0.02, 0.5)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.gauge.gain_error = self.sign * size;
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("gain", 1.0 + self.sign * size, Unit::One)]
+    }
+}
+
+impl Acting for ForceGain {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.gauge.gain_error = self.sign * size;
     }
 }

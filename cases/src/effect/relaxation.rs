@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, log_uniform};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -68,11 +68,6 @@ impl Shape for Relaxation {
         Sizes::new(1.0, 50.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let branches = self.times.iter().zip(&self.shares);
-        physics.contact.branches = branches.map(|(time, share)| Branch::new(size * self.unit * share, *time)).collect();
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let names = [("branch_stiffness", "time_constant"), ("second_branch_stiffness", "second_time_constant")];
         let branches = self.times.iter().zip(&self.shares).zip(names);
@@ -85,6 +80,13 @@ impl Shape for Relaxation {
                 ]
             })
             .collect()
+    }
+}
+
+impl Acting for Relaxation {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let branches = self.times.iter().zip(&self.shares);
+        physics.contact.branches = branches.map(|(time, share)| Branch::new(size * self.unit * share, *time)).collect();
     }
 }
 

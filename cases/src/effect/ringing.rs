@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -53,17 +53,19 @@ impl Shape for Resonance {
         Sizes::new(0.05, 1.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (rate, ratio) = (TAU * self.frequency, self.ratio);
-        physics.gauge.ringing = Some(Ringing { share: size, rate, ratio, y: 0.0, slope: 0.0 });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![
             Parameter::new("share", size, Unit::One),
             Parameter::new("frequency", self.frequency, Unit::Frequency),
             Parameter::new("damping_ratio", self.ratio, Unit::One),
         ]
+    }
+}
+
+impl Acting for Resonance {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (rate, ratio) = (TAU * self.frequency, self.ratio);
+        physics.gauge.ringing = Some(Ringing { share: size, rate, ratio, y: 0.0, slope: 0.0 });
     }
 }
 
@@ -90,11 +92,13 @@ impl Shape for Crosstalk {
         Sizes::new(1.0, 100.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.gauge.crosstalk = size * self.unit;
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         vec![Parameter::new("coupling", size * self.unit, Unit::One)]
+    }
+}
+
+impl Acting for Crosstalk {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.gauge.crosstalk = size * self.unit;
     }
 }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, sign};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -74,10 +74,6 @@ impl Shape for Softening {
         Sizes::new(0.05, 2.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.contact.change = Some(Change { course: self.course, relative: self.relative(size) });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let change = self.stiffness * self.relative(size);
         let amount = Parameter::new("stiffness_change", change, Unit::Stiffness);
@@ -86,5 +82,11 @@ impl Shape for Softening {
             Course::Exponential { time } => vec![amount, Parameter::new("time_constant", time, Unit::Time)],
             Course::Jump { at, .. } => vec![amount, Parameter::new("jump_time", at, Unit::Time)],
         }
+    }
+}
+
+impl Acting for Softening {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        physics.contact.change = Some(Change { course: self.course, relative: self.relative(size) });
     }
 }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -50,14 +50,16 @@ impl Shape for StickySpots {
         Sizes::new(1.0, 20.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let (places, height) = (self.places.clone(), size * self.unit);
-        physics.drive.friction.spots = Some(Spots { places, width: self.width, height });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let height = Parameter::new("friction", size * self.unit, Unit::Force);
         vec![height, Parameter::new("half_width", self.width, Unit::Length)]
+    }
+}
+
+impl Acting for StickySpots {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let (places, height) = (self.places.clone(), size * self.unit);
+        physics.drive.friction.spots = Some(Spots { places, width: self.width, height });
     }
 }
 
@@ -103,13 +105,15 @@ impl Shape for SignedDamping {
         Sizes::new(0.5, 10.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let wave = std::f64::consts::TAU / self.length;
-        physics.drive.eddy = Some(Eddy { damping: size * self.unit, wave, phase: self.phase });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let damping = Parameter::new("damping", size * self.unit, Unit::Damping);
         vec![damping, Parameter::new("period", self.length, Unit::Length)]
+    }
+}
+
+impl Acting for SignedDamping {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let wave = std::f64::consts::TAU / self.length;
+        physics.drive.eddy = Some(Eddy { damping: size * self.unit, wave, phase: self.phase });
     }
 }

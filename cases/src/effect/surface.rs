@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::{Chance, log_uniform, sign};
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -75,15 +75,6 @@ impl Shape for Surface {
         Sizes::new(1.0, 60.0)
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        let phase = self.phases[physics.trial % 2];
-        physics.contact.motion = Some(if self.frequency > 0.0 {
-            Motion::Sine { amplitude: size * self.unit.abs(), rate: TAU * self.frequency, phase }
-        } else {
-            Motion::Drift { velocity: self.velocity(size) }
-        });
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         if self.frequency > 0.0 {
             let amplitude = Parameter::new("amplitude", size * self.unit.abs(), Unit::Length);
@@ -91,5 +82,16 @@ impl Shape for Surface {
         } else {
             vec![Parameter::new("velocity", self.velocity(size), Unit::Velocity)]
         }
+    }
+}
+
+impl Acting for Surface {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        let phase = self.phases[physics.trial % 2];
+        physics.contact.motion = Some(if self.frequency > 0.0 {
+            Motion::Sine { amplitude: size * self.unit.abs(), rate: TAU * self.frequency, phase }
+        } else {
+            Motion::Drift { velocity: self.velocity(size) }
+        });
     }
 }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -55,12 +55,14 @@ impl Shape for EnvironmentMass {
         Sizes::new(1.0, 40.0)
     }
 
+    fn parameters(&self, size: f64) -> Vec<Parameter> {
+        vec![Parameter::new("mass", size * self.unit, Unit::Mass)]
+    }
+}
+
+impl Acting for EnvironmentMass {
     fn put(&self, size: f64, physics: &mut Physics) {
         let depth = (!self.bilateral).then_some(self.depth);
         physics.contact.tissue = Some(Tissue { mass: size * self.unit, depth });
-    }
-
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![Parameter::new("mass", size * self.unit, Unit::Mass)]
     }
 }

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::drive::Body;
 use crate::physics::Physics;
@@ -113,13 +113,15 @@ impl Shape for Backlash {
         Sizes { smallest: 1.0, first: 1.0, largest: 150.0 }
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        self.cut.transmission(STIFFEST, size * self.unit).put(physics);
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let gap = Parameter::new("gap", size * self.unit, Unit::Length);
         vec![gap, Parameter::new("tool_mass", self.cut.tool_mass(), Unit::Mass)]
+    }
+}
+
+impl Acting for Backlash {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        self.cut.transmission(STIFFEST, size * self.unit).put(physics);
     }
 }
 
@@ -151,10 +153,6 @@ impl Shape for Compliance {
         Sizes { smallest: 60.0, first: 150.0, largest: 2500.0 }
     }
 
-    fn put(&self, size: f64, physics: &mut Physics) {
-        self.transmission(size).put(physics);
-    }
-
     fn parameters(&self, size: f64) -> Vec<Parameter> {
         let transmission = self.transmission(size);
         vec![
@@ -162,5 +160,11 @@ impl Shape for Compliance {
             Parameter::new("damping", transmission.damping, Unit::Damping),
             Parameter::new("tool_mass", self.cut.tool_mass(), Unit::Mass),
         ]
+    }
+}
+
+impl Acting for Compliance {
+    fn put(&self, size: f64, physics: &mut Physics) {
+        self.transmission(size).put(physics);
     }
 }

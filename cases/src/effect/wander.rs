@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{Parameter, Scene, Shape, Sizes};
+use super::{Acting, Parameter, Scene, Shape, Sizes};
 use crate::chance::Chance;
 use crate::physics::Physics;
 use crate::scale::Unit;
@@ -54,6 +54,13 @@ impl Shape for ThermalWander {
         Sizes::new(1.0, 50.0)
     }
 
+    fn parameters(&self, size: f64) -> Vec<Parameter> {
+        let step = Parameter::new("step_per_root_second", size * self.unit, Unit::Force);
+        vec![step, Parameter::new("smoothing", self.time, Unit::Time)]
+    }
+}
+
+impl Acting for ThermalWander {
     fn put(&self, size: f64, physics: &mut Physics) {
         let mut chance = Chance::seed_from_u64(self.seed.wrapping_add(physics.trial as u64));
         let (mut walk, mut smooth) = (0.0, 0.0);
@@ -66,10 +73,5 @@ impl Shape for ThermalWander {
             })
             .collect();
         physics.gauge.wander = Some(Wander { points });
-    }
-
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        let step = Parameter::new("step_per_root_second", size * self.unit, Unit::Force);
-        vec![step, Parameter::new("smoothing", self.time, Unit::Time)]
     }
 }
