@@ -57,7 +57,7 @@ pub fn draw(seed: u64, index: u64, wish: &Wish) -> Result<Case> {
 /// # Errors
 /// The wish names an effect that `world` does not have, or one that its other choices hide; or `world` gave up.
 pub fn draw_in<W: World>(world: &mut W, seed: u64, index: u64, wish: &Wish) -> Result<Case> {
-    let plan = Plan::draw(wish, world.offered(), &mut chance::stream(seed, index, Stream::Plan))?;
+    let plan = Plan::draw(wish, world.offer(), &mut chance::stream(seed, index, Stream::Plan))?;
     let bench = Bench::draw(world, &plan, seed, index);
     let (effects, tracks) = bench.conceal(world, &plan, &chance::stream(seed, index, Stream::Shape))?;
     let mut noise = chance::stream(seed, index, Stream::Noise);

@@ -11,6 +11,7 @@ pub mod chance;
 pub mod contact;
 pub mod drive;
 pub mod effect;
+pub mod elsewhere;
 pub mod gauge;
 pub mod nominal;
 pub mod physics;
@@ -28,6 +29,7 @@ pub mod wish;
 pub mod world;
 
 pub use case::{Case, draw, draw_in};
+pub use elsewhere::Simulator;
 pub use truth::Truth;
 pub use wish::{What, Wish};
 pub use world::{Source, World};

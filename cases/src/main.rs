@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
+use palpate_cases::elsewhere::python;
 use palpate_cases::reference::Kind as Reference;
 use palpate_cases::sensors::Grade;
-use palpate_cases::{What, Wish, draw};
+use palpate_cases::world::{Own, Source, World};
+use palpate_cases::{Simulator, What, Wish, draw_in};
 
 /// Recordings of simulated rigs with concealed physics
 #[derive(Debug, Parser)]
@@ -39,9 +41,34 @@ struct Cli {
     /// Only linear rigs at the size of a bench
     #[arg(long)]
     bench: bool,
+    /// Whose simulation makes them
+    #[arg(long, default_value = "own")]
+    source: Maker,
+    /// Folder in which Python packages are set up for the simulators of others
+    #[arg(long, default_value = "target/python")]
+    python_home: PathBuf,
     /// Folder to write to
     #[arg(long)]
     out: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Maker {
+    Own,
+    Mujoco,
+    Drake,
+    Exudyn,
+}
+
+impl Maker {
+    fn source(self) -> Source {
+        match self {
+            Self::Own => Source::Own,
+            Self::Mujoco => Source::Mujoco,
+            Self::Drake => Source::Drake,
+            Self::Exudyn => Source::Exudyn,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -99,10 +126,20 @@ impl Cli {
 
 fn main() -> Result<()> {
     let cli = Cli::parse();
+    match cli.source.source() {
+        Source::Own => write_all(&cli, &mut Own),
+        source => {
+            let python = python::set_up(&cli.python_home, &python::SIMULATORS)?;
+            write_all(&cli, &mut Simulator::start(&python, source)?)
+        }
+    }
+}
+
+fn write_all<W: World>(cli: &Cli, world: &mut W) -> Result<()> {
     let wish = cli.wish();
     let mut truths = Vec::new();
     for index in 0..cli.count {
-        let case = draw(cli.seed, index, &wish)?;
+        let case = draw_in(world, cli.seed, index, &wish)?;
         case.write(&cli.out.join(format!("case-{index:04}")))?;
         truths.push(case.truth);
     }

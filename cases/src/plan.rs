@@ -10,10 +10,7 @@ use crate::scale::Scale;
 use crate::sensors::Grade;
 use crate::truth::Kind;
 use crate::wish::{What, Wish};
-
-/// Pairs of which one holds the other, or that are two views of one part.
-const NOT_TOGETHER: [[&str; 2]; 2] =
-    [["coulomb_friction", "stribeck_friction"], ["backlash", "transmission_compliance"]];
+use crate::world::Offer;
 
 /// All choices of a case but the numbers of its rig.
 #[derive(Debug, Clone)]
@@ -41,23 +38,23 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Draws what `wish` leaves open, from the effects `offered`.
+    /// Draws what `wish` leaves open, from what is on `offer`.
     ///
     /// # Errors
     /// The wish names an effect that is not offered, or one that its other choices hide.
-    pub fn draw(wish: &Wish, offered: &'static [Known], chance: &mut Chance) -> Result<Self> {
+    pub fn draw(wish: &Wish, offer: Offer, chance: &mut Chance) -> Result<Self> {
         let what = match &wish.what {
             Some(what) => what.clone(),
-            None => any(offered, chance),
+            None => any(offer.effects, chance),
         };
-        let asked = names(&what, offered)?;
+        let asked = names(&what, offer)?;
         let needs_effort = asked.iter().any(|known| known.needs_effort);
         let one_sided = asked.iter().any(|known| !known.bilateral);
         ensure!(!(needs_effort && wish.effort == Some(false)), "{} shows in the effort alone", listed(&asked));
         ensure!(!(one_sided && wish.bilateral == Some(true)), "{} needs a surface that can be left", listed(&asked));
         let (often, seldom) = (chance.random_bool(0.8), chance.random_bool(0.12));
         let effort = wish.effort.unwrap_or(needs_effort || often);
-        let enough = suited(offered, &what, effort, true).len() >= wanted(&what).0;
+        let enough = suited(offer.effects, &what, effort, true).len() >= wanted(&what).0;
         let bilateral = wish.bilateral.unwrap_or(seldom && !one_sided && enough);
         let grade = wish.sensors.unwrap_or(pick(chance, &[Grade::Coarse, Grade::Fine]));
         let rich = chance.random_bool(0.75);
@@ -66,8 +63,8 @@ impl Plan {
         let half = chance.random_bool(0.5);
         let stated = (chance.random_bool(2.0 / 3.0), chance.random_bool(0.5));
         let control_stated = chance.random_bool(0.7);
-        let suited = suited(offered, &what, effort, bilateral);
-        let effects = concealed(&what, asked, &suited, chance)?;
+        let suited = suited(offer.effects, &what, effort, bilateral);
+        let effects = concealed(&what, asked, &suited, offer, chance)?;
         let kind = kind(&what);
         let exact = wish.exact.unwrap_or(half);
         Ok(Self { kind, effects, grade, reference, effort, bilateral, scale, exact, stated, control_stated })
@@ -116,7 +113,7 @@ fn listed(asked: &[&Known]) -> String {
     asked.iter().map(|known| known.name).collect::<Vec<_>>().join(" with ")
 }
 
-fn names(what: &What, offered: &'static [Known]) -> Result<Vec<&'static Known>> {
+fn names(what: &What, offer: Offer) -> Result<Vec<&'static Known>> {
     let (_, inside, _) = wanted(what);
     let asked: Vec<&String> = match what {
         What::Nothing => Vec::new(),
@@ -125,21 +122,17 @@ fn names(what: &What, offered: &'static [Known]) -> Result<Vec<&'static Known>> 
     };
     let mut found = Vec::new();
     for name in asked {
-        match offered.iter().find(|known| known.name == name) {
+        match offer.effects.iter().find(|known| known.name == name) {
             Some(known) if known.listed == inside => found.push(known),
             Some(_) if inside => bail!("{name} is outside of the list"),
             Some(_) => bail!("{name} is an effect of the list"),
-            None => bail!("no effect is called {name}"),
+            None => bail!("no effect is called {name} here"),
         }
     }
     if let [one, other] = found.as_slice() {
-        ensure!(fit(one, other), "{} and {} are not told apart by name", one.name, other.name);
+        ensure!(offer.fit(one, other), "{} and {} are not told apart by name", one.name, other.name);
     }
     Ok(found)
-}
-
-fn fit(one: &Known, other: &Known) -> bool {
-    one != other && !NOT_TOGETHER.iter().any(|pair| pair.contains(&one.name) && pair.contains(&other.name))
 }
 
 /// The effects with their strengths.
@@ -147,17 +140,18 @@ fn concealed(
     what: &What,
     mut asked: Vec<&'static Known>,
     suited: &[&'static Known],
+    offer: Offer,
     chance: &mut Chance,
 ) -> Result<Vec<(&'static Known, f64)>> {
     let (count, _, strength) = wanted(what);
-    let enough = |one: &Known| count < 2 || suited.iter().any(|other| fit(one, other));
+    let enough = |one: &Known| count < 2 || suited.iter().any(|other| offer.fit(one, other));
     ensure!(
         asked.len() == count || suited.iter().any(|one| enough(one)),
         "nothing that is offered suits such a recording"
     );
     while asked.len() < count {
         let one = pick(chance, suited);
-        if asked.iter().all(|other| fit(one, other)) && enough(one) {
+        if asked.iter().all(|other| offer.fit(one, other)) && enough(one) {
             asked.push(one);
         }
     }

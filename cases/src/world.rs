@@ -24,6 +24,45 @@ pub enum Source {
     Exudyn,
 }
 
+impl Source {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Own, Self::Mujoco, Self::Drake, Self::Exudyn];
+
+    /// As the answers and the command line write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Mujoco => "mujoco",
+            Self::Drake => "drake",
+            Self::Exudyn => "exudyn",
+        }
+    }
+}
+
+/// The effects that a simulation has.
+#[derive(Debug, Clone, Copy)]
+pub struct Offer {
+    /// One by one.
+    pub effects: &'static [Known],
+    /// Pairs that it cannot play, or of which one holds the other, or that are two views of one part.
+    pub apart: &'static [[&'static str; 2]],
+}
+
+impl Offer {
+    /// Of our own simulation.
+    pub const OWN: Self = Self {
+        effects: &ALL,
+        apart: &[["coulomb_friction", "stribeck_friction"], ["backlash", "transmission_compliance"]],
+    };
+
+    /// Whether a case can hold both.
+    #[must_use]
+    pub fn fit(&self, one: &Known, other: &Known) -> bool {
+        one != other && !self.apart.iter().any(|pair| pair.contains(&one.name) && pair.contains(&other.name))
+    }
+}
+
 /// What plays the physics of a case. All else, from the rig to the noise, is the same for all.
 pub trait World {
     /// An effect with all of its shape drawn but its size.
@@ -33,7 +72,7 @@ pub trait World {
     fn source(&self) -> Source;
 
     /// The effects that it has.
-    fn offered(&self) -> &'static [Known];
+    fn offer(&self) -> Offer;
 
     /// The nominal physics of a rig that conceals `effects`: `drawn`, unless one of them takes the place of a part.
     fn nominal(&self, drawn: Nominal, effects: &[&Known]) -> Nominal {
@@ -62,8 +101,8 @@ impl World for Own {
         Source::Own
     }
 
-    fn offered(&self) -> &'static [Known] {
-        &ALL
+    fn offer(&self) -> Offer {
+        Offer::OWN
     }
 
     fn shape(&self, name: &str, scene: &Scene, chance: &Chance) -> Option<Box<Self::Effect>> {

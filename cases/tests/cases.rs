@@ -7,6 +7,7 @@ use palpate_cases::effect::name::{ALL, Acts, Known};
 use palpate_cases::plan::Plan;
 use palpate_cases::reference::Kind;
 use palpate_cases::sensors::Grade;
+use palpate_cases::world::Offer;
 use palpate_cases::{Case, What, Wish, draw};
 
 fn wish(what: What) -> Wish {
@@ -136,10 +137,10 @@ fn what_is_drawn_can_be_seen() {
     for _ in 0..300 {
         let pair = What::Pair { names: None, strength: None };
         let blind = Wish { what: Some(pair.clone()), effort: Some(false), ..Wish::default() };
-        let effects = Plan::draw(&blind, &ALL, chance).unwrap().effects;
+        let effects = Plan::draw(&blind, Offer::OWN, chance).unwrap().effects;
         assert!(effects.iter().all(|(known, strength)| !known.needs_effort && (0.1..=10.0).contains(strength)));
         let glued = Wish { what: Some(pair), bilateral: Some(true), ..Wish::default() };
-        let effects = Plan::draw(&glued, &ALL, chance).unwrap().effects;
+        let effects = Plan::draw(&glued, Offer::OWN, chance).unwrap().effects;
         assert!(effects.iter().all(|(known, _)| known.bilateral) && effects[0].0 != effects[1].0);
     }
 }

@@ -61,6 +61,12 @@ impl Nonlinear {
         Self { form: chance.random_range(0..3), depth, stiffness: scene.nominal.stiffness, harder: sign(chance) > 0.0 }
     }
 
+    /// A power law.
+    #[must_use]
+    pub fn power(scene: &Scene, chance: &mut Chance) -> Self {
+        Self { form: 0, ..Self::draw(scene, chance) }
+    }
+
     fn exponent(&self, size: f64) -> f64 {
         if self.harder { 1.0 + size } else { 1.0 / (1.0 + size) }
     }

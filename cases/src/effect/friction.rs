@@ -60,6 +60,12 @@ impl Coulomb {
         Self { asymmetry, unit: 0.02 * scene.effort }
     }
 
+    /// Alike in both directions.
+    #[must_use]
+    pub fn even(scene: &Scene) -> Self {
+        Self { asymmetry: 0.0, unit: 0.02 * scene.effort }
+    }
+
     fn levels(&self, size: f64) -> (f64, f64) {
         let level = size * self.unit;
         (level * (1.0 + self.asymmetry), level * (1.0 - self.asymmetry))
@@ -107,6 +113,12 @@ impl Slowing {
         let speed = scene.speed * log_uniform(chance, 0.05, 0.4);
         let exponent = if chance.random_bool(0.5) { 1 } else { 2 };
         Self { ratio: chance.random_range(0.25..0.5), speed, exponent, unit: 0.02 * scene.effort }
+    }
+
+    /// Falling off as an exponential of the speed.
+    #[must_use]
+    pub fn exponential(scene: &Scene, chance: &mut Chance) -> Self {
+        Self { exponent: 1, ..Self::draw(scene, chance) }
     }
 }
 

@@ -37,6 +37,12 @@ impl GravityLoad {
         let angle = scene.scale.rotary.then(|| (scene.scale.length, chance.random_range(-1.2..1.2)));
         Self { angle, unit: 0.02 * scene.effort * sign(chance) }
     }
+
+    /// The same wherever the tool is.
+    #[must_use]
+    pub fn constant(scene: &Scene, chance: &mut Chance) -> Self {
+        Self { angle: None, unit: 0.02 * scene.effort * sign(chance) }
+    }
 }
 
 impl Shape for GravityLoad {

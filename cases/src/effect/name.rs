@@ -29,24 +29,24 @@ pub struct Known {
     pub needs_effort: bool,
 }
 
-const fn contact(name: &'static str, bilateral: bool) -> Known {
+pub(crate) const fn contact(name: &'static str, bilateral: bool) -> Known {
     Known { name, acts: Acts::Contact, listed: true, bilateral, needs_effort: false }
 }
 
-const fn drive(name: &'static str) -> Known {
+pub(crate) const fn drive(name: &'static str) -> Known {
     Known { name, acts: Acts::Drive, listed: true, bilateral: true, needs_effort: true }
 }
 
-const fn sensor(name: &'static str) -> Known {
+pub(crate) const fn sensor(name: &'static str) -> Known {
     Known { name, acts: Acts::Sensor, listed: true, bilateral: true, needs_effort: false }
 }
 
-const fn outside(name: &'static str, acts: Acts) -> Known {
+pub(crate) const fn outside(name: &'static str, acts: Acts) -> Known {
     let bilateral = !matches!(acts, Acts::Contact);
     Known { name, acts, listed: false, bilateral, needs_effort: matches!(acts, Acts::Drive) }
 }
 
-/// All of them.
+/// All of our own simulation.
 pub const ALL: [Known; 40] = [
     contact("nonlinear_stiffness", true),
     contact("layered_stiffness", false),
@@ -91,8 +91,11 @@ pub const ALL: [Known; 40] = [
     outside("loose_contact", Acts::Sensor),
 ];
 
+/// Outside of the list, and in the simulations of others alone.
+pub const ELSEWHERE: [Known; 1] = [outside("soft_constraint", Acts::Contact)];
+
 /// The effect `name`.
 #[must_use]
 pub fn known(name: &str) -> Option<&'static Known> {
-    ALL.iter().find(|known| known.name == name)
+    ALL.iter().chain(&ELSEWHERE).find(|known| known.name == name)
 }

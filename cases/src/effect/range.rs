@@ -43,6 +43,12 @@ impl ForceSaturation {
         Self { peak: scene.force, knee: if chance.random_bool(0.6) { 0.0 } else { chance.random_range(0.01..0.05) } }
     }
 
+    /// With a sharp end below the peak of the trials.
+    #[must_use]
+    pub fn sharp(scene: &Scene) -> Self {
+        Self { peak: scene.force, knee: 0.0 }
+    }
+
     fn limit(&self, size: f64) -> f64 {
         self.peak / (1.0 + size) / (1.0 - self.knee)
     }
