@@ -31,7 +31,7 @@ import logging  # noqa: E402
 
 from protocol import PERIOD, Track, only, serve  # noqa: E402
 
-STEPS = 4
+STEPS = 2
 RADIUS = 0.05
 ANCHOR = 1.0
 EFFECTS = (

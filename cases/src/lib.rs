@@ -3,7 +3,8 @@
 //!
 //! [`draw()`] makes a [`Case`] from a seed: a rig file with nominal values, two trials in a
 //! closed loop, and apart from them the [`Truth`]. How large an effect is, is told by its strength: the
-//! RMS of what the nominal physics cannot take up, over the floor of the sensor.
+//! RMS of what the nominal physics cannot take up, over the floor of the sensor. [`draw_in`] makes the same from the
+//! simulations of others: a [`Simulator`] is MuJoCo, Drake or Exudyn.
 
 pub mod bench;
 pub mod case;

@@ -218,3 +218,31 @@ fn run(command: &mut Command) -> Result<()> {
     anyhow::ensure!(output.status.success(), "{text} failed: {last}");
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_never_set_up_is_named_with_its_versions() {
+        let home = std::env::temp_dir().join(format!("palpate-no-python-{}", std::process::id()));
+        let text = find(&home, &SIMULATORS).unwrap_err().to_string();
+        for part in ["mujoco==", "drake==", "exudyn==", "not been set up", "pip install"] {
+            assert!(text.contains(part), "{text}");
+        }
+        assert!(!home.exists());
+    }
+
+    #[test]
+    fn what_is_pinned_otherwise_is_not_taken() {
+        let home = std::env::temp_dir().join(format!("palpate-old-python-{}", std::process::id()));
+        let place = Place::new(&home, &SIMULATORS);
+        fs::create_dir_all(place.python().interpreter.parent().unwrap()).unwrap();
+        fs::write(place.python().interpreter, "").unwrap();
+        fs::write(place.marker(), "mujoco==1.0.0\n").unwrap();
+        assert!(find(&home, &SIMULATORS).is_err());
+        fs::write(place.marker(), SIMULATORS.requirements).unwrap();
+        assert!(find(&home, &SIMULATORS).unwrap().script("mujoco").is_ok());
+        fs::remove_dir_all(&home).unwrap();
+    }
+}

@@ -18,12 +18,13 @@ use crate::scale::Unit;
 pub struct Named {
     /// By the list, or of its own.
     pub name: &'static str,
+    form: &'static str,
     shape: Box<dyn Shape + Send>,
 }
 
 impl Shape for Named {
     fn form(&self) -> &'static str {
-        self.shape.form()
+        self.form
     }
 
     fn sizes(&self) -> Sizes {
@@ -56,7 +57,14 @@ pub fn draw(name: &'static str, scene: &Scene, chance: &Chance) -> Option<Named>
         "soft_constraint" => Box::new(Soft::draw(scene, chance)),
         _ => return None,
     };
-    Some(Named { name, shape })
+    // The law is as told, the way to stick or to meet the simulator's own.
+    let form = match name {
+        "coulomb_friction" => "the simulator's own dry friction",
+        "stribeck_friction" => "the simulator's own dry friction, exponential",
+        "backlash" => "two masses with a gap between the simulator's own stops",
+        _ => shape.form(),
+    };
+    Some(Named { name, form, shape })
 }
 
 /// `hunt_crossley_damping`: `K p (1 + d v)`, alpha being K d.

@@ -1,0 +1,254 @@
+//! The simulations of others against our own at a far finer step: the same rig, the same trial, the same law. They are
+//! left out, with a word, where the simulators have not been set up (`cases --source mujoco` does that).
+
+use std::path::PathBuf;
+
+use palpate_cases::chance::{Stream, stream};
+use palpate_cases::effect::actuator::{EffortLag, EffortSaturation};
+use palpate_cases::effect::delay::{ChannelDelay, ToolInertia};
+use palpate_cases::effect::elastic::Nonlinear;
+use palpate_cases::effect::friction::{Coulomb, Slowing};
+use palpate_cases::effect::gravity::GravityLoad;
+use palpate_cases::effect::range::ForceSaturation;
+use palpate_cases::effect::transmission::Compliance;
+use palpate_cases::effect::{Acting, Scene, own_chance};
+use palpate_cases::elsewhere::{python, shape};
+use palpate_cases::nominal::{Control, Nominal};
+use palpate_cases::physics::Physics;
+use palpate_cases::reference::{self, Kind};
+use palpate_cases::scale::Scale;
+use palpate_cases::simulate::{self, Encoder, PERIOD, Setup, Track};
+use palpate_cases::{Simulator, Source, What, Wish, World, draw_in};
+
+const RIG: Nominal =
+    Nominal { mass: 0.5, viscous: 3.0, stiffness: 600.0, damping: 6.0, surface: 0.001, bilateral: false };
+const CONTROL: Control = Control { proportional: 800.0, derivative: 20.0, filter_hz: 100.0 };
+const ENCODER: Encoder = Encoder { step: 1e-12, offset: 0.0 };
+
+/// Error of a reading of the finest force sensor of a case, N: what is far below it is in no recording.
+const FLOOR: f64 = 0.0101;
+
+fn simulator(source: Source) -> Option<Simulator> {
+    let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../target/python"));
+    let home = std::env::var_os("PALPATE_PYTHON_HOME").map_or_else(beside, PathBuf::from);
+    match python::find(&home, &python::SIMULATORS) {
+        Ok(python) => Some(Simulator::start(&python, source).unwrap()),
+        Err(missing) => {
+            eprintln!("left out: {missing}");
+            None
+        }
+    }
+}
+
+fn scene(nominal: Nominal) -> Scene {
+    let travel = (-0.006, 0.006);
+    Scene { nominal, depth: 0.005, force: 3.5, effort: 5.0, speed: 0.03, travel, duration: 8.0, scale: Scale::BENCH }
+}
+
+/// The first eight seconds of a rich trial.
+fn path(nominal: Nominal) -> Vec<f64> {
+    let depths = reference::depths(Kind::Rich, &nominal, 0.005, &mut stream(3, 0, Stream::Reference));
+    reference::lead(&depths[..8000], &nominal, &CONTROL)
+}
+
+fn setup(nominal: Nominal) -> Setup {
+    Setup { nominal, control: CONTROL, encoder: ENCODER, steps: 200 }
+}
+
+fn ours(nominal: Nominal, put: impl FnOnce(&mut Physics)) -> Track {
+    let mut physics = Physics::new(nominal, 0, PERIOD / 200.0);
+    put(&mut physics);
+    simulate::run(&setup(nominal), physics, &path(nominal))
+}
+
+fn theirs(simulator: &mut Simulator, nominal: Nominal, effect: Option<(&'static str, f64)>) -> Track {
+    let shape = effect.map(|(name, size)| (shape::draw(name, &scene(nominal), &shapes()).unwrap(), size));
+    let effects: Vec<_> = shape.iter().map(|(shape, size)| (shape, *size)).collect();
+    simulator.run(&setup(nominal), &[path(nominal)], &effects).unwrap().remove(0)
+}
+
+fn shapes() -> palpate_cases::chance::Chance {
+    stream(4, 0, Stream::Shape)
+}
+
+/// RMS difference of force and of effort over the floor, but for the rows at which either tool crosses the surface:
+/// on which side of the damper's step they fall is a matter of micrometres.
+fn apart(nominal: Nominal, one: &Track, other: &Track) -> (f64, f64) {
+    let near = |track: &Track, row: usize| {
+        !nominal.bilateral && (track.position[row] - nominal.surface).abs() < 2.0 * track.velocity[row].abs() * PERIOD
+    };
+    let rows: Vec<usize> = (1..one.force.len()).filter(|row| !near(one, *row) && !near(other, *row)).collect();
+    assert!(rows.len() > 7000, "{} rows", rows.len());
+    let rms = |a: &[f64], b: &[f64]| {
+        let sum: f64 = rows.iter().map(|row| (a[*row] - b[*row]).powi(2)).sum();
+        (sum / rows.len() as f64).sqrt() / FLOOR
+    };
+    (rms(&one.force, &other.force), rms(&one.effort, &other.effort))
+}
+
+/// Our own shape of the effect that a simulator is told by the same name.
+fn twin(name: &str, scene: &Scene) -> Box<dyn Acting> {
+    let chance = &mut own_chance(name, &shapes());
+    match name {
+        "nonlinear_stiffness" => Box::new(Nonlinear::power(scene, chance)),
+        "coulomb_friction" => Box::new(Coulomb::even(scene)),
+        "stribeck_friction" => Box::new(Slowing::exponential(scene, chance)),
+        "gravity_load" => Box::new(GravityLoad::constant(scene, chance)),
+        "transmission_compliance" => Box::new(Compliance::draw(scene, chance)),
+        "effort_saturation" => Box::new(EffortSaturation::draw(scene)),
+        "effort_lag" => Box::new(EffortLag),
+        "tool_inertia" => Box::new(ToolInertia { mass: scene.nominal.mass }),
+        "channel_delay" => Box::new(ChannelDelay),
+        "force_saturation" => Box::new(ForceSaturation::sharp(scene)),
+        _ => panic!("{name} has no twin"),
+    }
+}
+
+/// Holds `simulator` against our own simulation: without an effect, clamped and not, and with each of `effects`, which
+/// have a size and how close they are to come. Without it the same trial is off by far more.
+fn alike(source: Source, plain: f64, effects: &[(&'static str, f64, f64)]) {
+    let Some(mut simulator) = simulator(source) else { return };
+    for bilateral in [false, true] {
+        let nominal = Nominal { bilateral, ..RIG };
+        let (force, effort) = apart(nominal, &ours(nominal, |_| ()), &theirs(&mut simulator, nominal, None));
+        eprintln!("{source:?} plain, bilateral {bilateral}: {force:.3} {effort:.3}");
+        assert!(force < plain && effort < plain, "bilateral {bilateral}: {force} {effort}");
+    }
+    let nothing = ours(RIG, |_| ());
+    for (name, size, close) in effects {
+        let own = ours(RIG, |physics| twin(name, &scene(RIG)).put(*size, physics));
+        let (force, effort) = apart(RIG, &own, &theirs(&mut simulator, RIG, Some((name, *size))));
+        let (there, felt) = apart(RIG, &own, &nothing);
+        eprintln!("{source:?} {name}: {force:.3} {effort:.3}, its own {there:.3} {felt:.3}");
+        assert!(force < *close && effort < *close, "{name}: {force} {effort}");
+        assert!(there.max(felt) > 2.0 * close, "{name}: {there} {felt}");
+    }
+}
+
+// A tenth of the floor: what a step of 0.1 ms leaves of a trial with twenty touches. MuJoCo's friction creeps where ours
+// holds, so the tool stands elsewhere by micrometres and the controller pushes on: the effort tells.
+#[test]
+fn mujoco_plays_the_nominal_rig_and_its_effects() {
+    let effects = [
+        ("coulomb_friction", 2.0, 6.0),
+        ("gravity_load", 5.0, 0.15),
+        ("transmission_compliance", 150.0, 0.15),
+        ("effort_saturation", 1.5, 0.15),
+        ("effort_lag", 0.005, 0.15),
+        ("tool_inertia", 0.2, 0.15),
+        ("channel_delay", 0.0025, 0.15),
+        ("force_saturation", 1.0, 0.15),
+    ];
+    alike(Source::Mujoco, 0.1, &effects);
+}
+
+// Steps of half a millisecond, of the first order: each touch is late by up to half a sample.
+#[test]
+fn drake_plays_the_nominal_rig_and_its_effects() {
+    let effects = [
+        ("coulomb_friction", 2.0, 0.8),
+        ("gravity_load", 5.0, 0.8),
+        ("transmission_compliance", 150.0, 0.5),
+        ("effort_saturation", 1.5, 0.8),
+        ("tool_inertia", 0.2, 0.8),
+    ];
+    alike(Source::Drake, 0.8, &effects);
+}
+
+// Bristles bend by micrometres before they slip.
+#[test]
+fn exudyn_plays_the_nominal_rig_and_its_effects() {
+    let effects = [
+        ("nonlinear_stiffness", 0.3, 0.15),
+        ("coulomb_friction", 2.0, 0.5),
+        ("stribeck_friction", 3.0, 0.5),
+        ("gravity_load", 5.0, 0.15),
+        ("transmission_compliance", 150.0, 0.15),
+    ];
+    alike(Source::Exudyn, 0.1, &effects);
+}
+
+/// RMS over the floor of the mean force against `law` of depth, velocity and acceleration, all means over a
+/// millisecond in contact, and of the mean force itself.
+fn against(track: &Track, law: impl Fn(f64, f64, f64) -> f64) -> (f64, f64) {
+    let (mut sum, mut all, mut count) = (0.0, 0.0, 0.0);
+    for row in 1..track.force.len() - 1 {
+        let depth = |row: usize| track.position[row] - RIG.surface;
+        // Neither touching nor leaving: the mean of a law with a step is no law of the means.
+        if [row - 1, row, row + 1].into_iter().any(|row| depth(row) < 1e-4 || track.force[row] <= 0.0) {
+            continue;
+        }
+        let v = (track.position[row + 1] - track.position[row]) / PERIOD;
+        let a = (track.velocity[row + 1] - track.velocity[row]) / PERIOD;
+        let force = track.force_mean[row];
+        sum += (force - law(0.5 * (depth(row) + depth(row + 1)), v, a)).powi(2);
+        all += force * force;
+        count += 1.0;
+    }
+    assert!(count > 2000.0, "{count} rows in contact");
+    (f64::sqrt(sum / count) / FLOOR, f64::sqrt(all / count) / FLOOR)
+}
+
+#[test]
+fn drake_has_the_contact_of_hunt_and_crossley() {
+    let Some(mut simulator) = simulator(Source::Drake) else { return };
+    let rig = Nominal { damping: 0.0, ..RIG };
+    let track = theirs(&mut simulator, rig, Some(("hunt_crossley_damping", 10.0)));
+    let (left, all) = against(&track, |p, v, _| RIG.stiffness * p * (1.0 + 10.0 * v).max(0.0));
+    let (without, _) = against(&track, |p, _, _| RIG.stiffness * p);
+    // A step's force is that of its end.
+    eprintln!("Drake hunt_crossley_damping: {left:.3} of {all:.3}, without it {without:.3}");
+    assert!(left < 0.6 && without > 10.0, "{left} {without}");
+}
+
+#[test]
+fn mujocos_impedance_is_a_mass_that_is_moved_along() {
+    let Some(mut simulator) = simulator(Source::Mujoco) else { return };
+    let nominal = |p: f64, v: f64| RIG.stiffness * p + RIG.damping * v;
+    let track = theirs(&mut simulator, RIG, Some(("environment_mass", 4.0)));
+    let (left, all) = against(&track, |p, v, a| nominal(p, v) + 0.2 * RIG.mass * a);
+    let (without, _) = against(&track, |p, v, _| nominal(p, v));
+    eprintln!("Mujoco environment_mass: {left:.3} of {all:.3}, without it {without:.3}");
+    assert!(left < 0.3 && without > 3.0, "{left} {without}");
+}
+
+#[test]
+fn mujocos_soft_constraint_stiffens_by_its_manual() {
+    let Some(mut simulator) = simulator(Source::Mujoco) else { return };
+    let shape = shape::draw("soft_constraint", &scene(RIG), &shapes()).unwrap();
+    let values: Vec<f64> = palpate_cases::effect::Shape::parameters(&shape, 1.0).iter().map(|it| it.value).collect();
+    let [low, high, width] = values[..] else { panic!("{values:?}") };
+    // d(p) by the manual, midpoint 1/2 and power 2; the inverse inertia w cancels but for the mass: 1/(3 m).
+    let impedance = |p: f64| {
+        let x = (p / width).min(1.0);
+        let y = if x < 0.5 { 2.0 * x * x } else { 1.0 - 2.0 * (1.0 - x) * (1.0 - x) };
+        low + y * (high - low)
+    };
+    let weight = |d: f64| d / (1.0 - d);
+    let middle = 0.5 * (low + high);
+    let law = |p: f64, v: f64, a: f64| {
+        let d = impedance(p);
+        let ratio = weight(d) / weight(middle);
+        ratio * (RIG.stiffness * p * d / middle + RIG.damping * v) + 3.0 * RIG.mass * weight(d) * a
+    };
+    let track = theirs(&mut simulator, RIG, Some(("soft_constraint", 1.0)));
+    let (left, all) = against(&track, law);
+    let (without, _) = against(&track, |p, v, _| RIG.stiffness * p + RIG.damping * v);
+    eprintln!("Mujoco soft_constraint: {left:.3} of {all:.3}, without it {without:.3}");
+    assert!(left < 0.3 && without > 10.0, "{left} {without}");
+}
+
+#[test]
+fn a_case_is_drawn_as_at_home() {
+    let what = What::single("gravity_load", Some(3.0));
+    let wish = Wish { what: Some(what), bench: Some(true), rotary: Some(false), ..Wish::default() };
+    for source in [Source::Mujoco, Source::Exudyn] {
+        let Some(mut simulator) = simulator(source) else { return };
+        let case = draw_in(&mut simulator, 31, 0, &wish).unwrap();
+        assert_eq!(case.truth.source, source);
+        assert!((case.truth.strength / 3.0 - 1.0).abs() < 0.05, "{}", case.truth.strength);
+        assert_eq!(case, draw_in(&mut simulator, 31, 0, &wish).unwrap());
+        let other = Wish { what: Some(What::single("adhesion", None)), ..wish.clone() };
+        assert!(draw_in(&mut simulator, 31, 0, &other).unwrap_err().to_string().contains("adhesion"));
+    }
+}
