@@ -1,6 +1,6 @@
 //! The answers: what a case conceals. In the units of the case, and never among its files.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::effect::name::Acts;
 use crate::nominal::Nominal;
@@ -10,7 +10,7 @@ use crate::sensors::{Grade, Sensors};
 use crate::world::Source;
 
 /// What a case is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// Nothing is concealed.

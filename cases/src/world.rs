@@ -1,7 +1,7 @@
 //! Where a case happens: in our own simulation, or in somebody else's.
 
 use anyhow::Result;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::chance::Chance;
 use crate::effect::name::{ALL, Known};
@@ -11,7 +11,7 @@ use crate::physics::Physics;
 use crate::simulate::{self, PERIOD, Setup, Track};
 
 /// Whose simulation made a case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
     /// Ours.

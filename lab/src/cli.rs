@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::catalogue::{self, EffectsArgs};
+use crate::challenge::{self, ChallengeArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
 use crate::profile::{self, ProfileArgs};
@@ -29,6 +30,8 @@ enum Command {
     Simulate(SimulateArgs),
     /// Count what each estimator costs on the device
     Profile(ProfileArgs),
+    /// Put the diagnosis to recordings whose missing physics is concealed from it
+    Challenge(ChallengeArgs),
     /// List the physics that it knows beyond spring and damper
     Effects(EffectsArgs),
 }
@@ -41,6 +44,7 @@ pub fn run() -> ExitCode {
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
         Command::Profile(args) => profile::run(&args),
+        Command::Challenge(args) => challenge::run(&args),
         Command::Effects(args) => catalogue::run(&args),
     };
     match done {

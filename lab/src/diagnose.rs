@@ -65,23 +65,43 @@ pub fn diagnose(
     seed: u64,
     say: &dyn Fn(&str),
 ) -> Result<Found> {
-    command::ensure_usable(rig, trials, origin)?;
     say("reading the sensors");
-    let period = trials.iter().map(Recording::period).fold(0.0, f64::max);
-    let even = |recording: &Recording| Raw::of(recording, Figures::of(rig, recording), period);
-    let raws: Vec<Raw> = trials.iter().map(even).collect();
+    let raws = sensed(rig, origin, trials)?;
     let findings = check::check(rig, trials, &raws);
-    let (contact, drive) = (Lens::for_contact(rig, &raws), Lens::for_drive(rig, &raws));
-    let study = Study::new(rig, origin, Studio::new(raws, contact, drive, seed))?;
+    let study = study(rig, origin, raws, seed)?;
     let mut search = select::search(&study, say);
     let judgement = judge::judge(&study, &mut search, say).context("nothing was searched")?;
     say("the report");
     let handed = (!simulation.is_empty()).then(|| {
-        let simulated: Vec<Raw> = simulation.iter().map(even).collect();
+        let period = common_period(trials);
+        let simulated: Vec<Raw> = simulation.iter().map(|run| Raw::of(run, Figures::of(rig, run), period)).collect();
         compose::handed_rests(&study, &simulated)
     });
     let improved = improved::rig_of(rig, &study, &search, &judgement).context("nothing was searched")?;
     let parts = Parts { rig, study: &study, search: &search, judgement: &judgement, handed, findings };
     let (answer, pictures) = compose::compose(parts).context("no channel was left to look at")?;
     Ok(Found { answer, pictures, improved })
+}
+
+/// What the sensors of `trials` show, on one clock.
+///
+/// # Errors
+/// No channel that the rig predicts and every trial holds, or trials too short to tell anything.
+pub fn sensed(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Vec<Raw>> {
+    command::ensure_usable(rig, trials, origin)?;
+    let period = common_period(trials);
+    Ok(trials.iter().map(|trial| Raw::of(trial, Figures::of(rig, trial), period)).collect())
+}
+
+/// The trials `raws` as they are looked at, and the nominal model that they are held against.
+///
+/// # Errors
+/// Effects in the rig file that cannot be.
+pub fn study(rig: &Rig, origin: &str, raws: Vec<Raw>, seed: u64) -> Result<Study> {
+    let (contact, drive) = (Lens::for_contact(rig, &raws), Lens::for_drive(rig, &raws));
+    Ok(Study::new(rig, origin, Studio::new(raws, contact, drive, seed))?)
+}
+
+fn common_period(trials: &[Recording]) -> f64 {
+    trials.iter().map(Recording::period).fold(0.0, f64::max)
 }

@@ -1,6 +1,7 @@
 //! The host tool of palpate, as a library so that its binaries and tests share it.
 
 pub mod catalogue;
+pub mod challenge;
 pub mod cli;
 pub mod demo;
 pub mod device;

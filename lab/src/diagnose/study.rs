@@ -99,7 +99,9 @@ impl Study {
         [0.02, 0.2, 0.4, 0.6, 0.8].iter().map(|part| reached[(part * last as f64) as usize]).collect()
     }
 
-    fn even_floors(&self) -> Whitener {
+    /// Floors that are the same everywhere and have no memory: the noise of the sensors behind the lenses.
+    #[must_use]
+    pub fn even_floors(&self) -> Whitener {
         let raws = &self.studio.raws;
         let noise = |lens: &Lens, pick: &dyn Fn(usize) -> Option<f64>| {
             let all: Vec<f64> = (0..raws.len()).filter_map(pick).collect();

@@ -5,17 +5,26 @@ use std::collections::BTreeSet;
 use palpate_cases::reference;
 use palpate_cases::sensors::Grade;
 use palpate_cases::truth::Kind;
-use palpate_lab::diagnose::answer::Verdict;
-use serde::Serialize;
+use palpate_cases::{Source, Truth};
+use serde::{Deserialize, Serialize};
+
+use super::rival::Other;
+use super::told::Told;
+use super::values;
 
 /// The name under which an answer owns that nothing of its list explains the rest.
 const UNKNOWN: &str = "unknown";
 
 /// One case, scored.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Row {
+    /// Of all cases.
     pub seed: u64,
+    /// Place in the whole list.
     pub index: u64,
+    /// Whose simulation played it.
+    pub source: Source,
+    /// What it is about.
     pub kind: Kind,
     /// What was concealed.
     pub truth: Vec<String>,
@@ -23,7 +32,9 @@ pub struct Row {
     pub asked: f64,
     /// Of all effects together.
     pub strength: f64,
+    /// Coarse or fine sensors.
     pub grade: Grade,
+    /// Rich or poor trajectories.
     pub reference: reference::Kind,
     /// Whether the effort is recorded.
     pub effort: bool,
@@ -31,24 +42,31 @@ pub struct Row {
     pub named: Vec<String>,
     /// What the answer says that the data do not tell from it.
     pub rivals: Vec<Vec<String>>,
-    pub verdict: Option<Verdict>,
+    /// The verdict, in its word.
+    pub verdict: Option<String>,
     /// Held-out residual over the floor, values refitted.
     pub before: Option<f64>,
     /// The same with the named physics.
     pub after: Option<f64>,
     /// Parameters of the same law, where the answer is right.
     pub values: Vec<Compared>,
+    /// From the command's start to its end.
     pub seconds: f64,
+    /// What others make of it, where they were asked.
+    #[serde(default)]
+    pub others: Vec<Other>,
     /// Why there is no answer.
     pub failure: Option<String>,
 }
 
 /// A parameter held against its truth.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Compared {
     /// "hunt_crossley_damping alpha".
     pub name: String,
+    /// In the case's own units.
     pub truth: f64,
+    /// What the answer says.
     pub value: f64,
     /// Whether the 95 % interval holds the truth.
     pub covered: bool,
@@ -56,6 +74,7 @@ pub struct Compared {
 
 impl Compared {
     /// |value / truth - 1|
+    #[must_use]
     pub fn error(&self) -> f64 {
         (self.value / self.truth - 1.0).abs()
     }
@@ -66,22 +85,66 @@ fn set(names: &[String]) -> BTreeSet<&str> {
 }
 
 impl Row {
+    /// Holds what was `told` of a case, or why nothing was, against its `truth`.
+    #[must_use]
+    pub fn score(truth: &Truth, told: Result<Told, String>, seconds: f64) -> Self {
+        let mut row = Self {
+            seed: truth.seed,
+            index: truth.index,
+            source: truth.source,
+            kind: truth.kind,
+            truth: truth.effects.iter().map(|effect| effect.name.to_owned()).collect(),
+            asked: truth.effects.iter().map(|effect| effect.strength_asked).fold(0.0, f64::max),
+            strength: truth.strength,
+            grade: truth.grade,
+            reference: truth.reference,
+            effort: truth.channels.iter().any(|channel| channel.starts_with("effort")),
+            named: Vec::new(),
+            rivals: Vec::new(),
+            verdict: None,
+            before: None,
+            after: None,
+            values: Vec::new(),
+            seconds,
+            others: Vec::new(),
+            failure: None,
+        };
+        match told {
+            Err(failure) => row.failure = Some(failure),
+            Ok(told) => {
+                row.named = told.physics.iter().map(|physics| physics.name.clone()).collect();
+                row.rivals = told.rivals.iter().map(|rival| rival.physics.clone()).collect();
+                row.before = told.fit.over_floor(told.fit.refitted);
+                row.after = told.fit.over_floor(told.fit.improved);
+                if truth.kind == Kind::Single && row.is_right() {
+                    row.values = values::compare(truth, &told.physics);
+                }
+                row.verdict = Some(told.verdict);
+            }
+        }
+        row
+    }
+
     /// Physics named, or owned as unknown.
+    #[must_use]
     pub fn is_detected(&self) -> bool {
         !self.named.is_empty()
     }
 
     /// Physics where nothing is missing.
+    #[must_use]
     pub fn is_false_alarm(&self) -> bool {
         self.kind == Kind::None && self.is_detected()
     }
 
     /// Whether the unknown is owned.
+    #[must_use]
     pub fn is_owned(&self) -> bool {
         self.named.iter().any(|name| name == UNKNOWN)
     }
 
     /// The names of the answer are those of the truth, none more; outside of the list, the unknown alone.
+    #[must_use]
     pub fn is_right(&self) -> bool {
         match self.kind {
             _ if self.failure.is_some() => false,
@@ -91,17 +154,20 @@ impl Row {
     }
 
     /// The truth is among the names of the answer and its rivals.
+    #[must_use]
     pub fn is_within(&self) -> bool {
         let hidden = set(&self.truth);
         self.is_right() || (!hidden.is_empty() && self.is_detected() && hidden.is_subset(&self.offered()))
     }
 
     /// Every name in the answer and its rivals.
+    #[must_use]
     pub fn offered(&self) -> BTreeSet<&str> {
         self.named.iter().chain(self.rivals.iter().flatten()).map(String::as_str).collect()
     }
 
     /// For people who watch.
+    #[must_use]
     pub fn line(&self) -> String {
         let mark = match () {
             () if self.failure.is_some() => "BROKE",
@@ -111,9 +177,10 @@ impl Row {
             () => "missed",
         };
         format!(
-            "{mark:6} {}/{} {:?} -> {:?} rivals {:?}, strength {:.2}, {:?} {:?}, after {:.2} of the floor, {:.1} s{}",
+            "{mark:6} {}/{}/{} {:?} -> {:?} rivals {:?}, strength {:.2}, {:?} {:?}, after {:.2} of the floor, {:.1} s{}",
             self.seed,
             self.index,
+            self.source.name(),
             self.truth,
             self.named,
             self.rivals,

@@ -1,10 +1,9 @@
 //! Parameters that mean the same in the cases and in the diagnosis, under names of their own.
 
+use super::row::Compared;
+use super::told::Physics;
 use palpate_cases::Truth;
 use palpate_cases::truth::TrueEffect;
-use palpate_lab::diagnose::answer::Physics;
-
-use crate::row::Compared;
 
 /// Effect, parameter in the truth, parameter in the answer: the same law and the same unit.
 const SAME: [[&str; 3]; 31] = [
@@ -50,6 +49,7 @@ const ALIKE: [[&str; 2]; 4] = [
 ];
 
 /// What the answer's parameters are, held against the truth of the one effect concealed.
+#[must_use]
 pub fn compare(truth: &Truth, physics: &[Physics]) -> Vec<Compared> {
     // Several tables of one name are several branches: which is which is nobody's word.
     let ([effect], [found]) = (truth.effects.as_slice(), physics) else { return Vec::new() };
@@ -60,10 +60,11 @@ pub fn compare(truth: &Truth, physics: &[Physics]) -> Vec<Compared> {
         .filter_map(|(name, theirs, ours)| {
             let truth = effect.parameters.iter().find(|value| value.name == theirs)?;
             let value = found.parameters.iter().find(|value| value.name == ours)?;
-            assert_eq!(truth.unit, value.unit, "{name}: {theirs} is no {ours}");
             let [low, high] = value.ci95;
-            let covered = (low..=high).contains(&truth.value);
-            Some(Compared { name: format!("{name} {ours}"), truth: truth.value, value: value.value, covered })
+            let covered = low.is_none_or(|low| low <= truth.value) && high.is_none_or(|high| truth.value <= high);
+            // Another unit is another quantity, whatever the table says.
+            let told = value.value.filter(|_| truth.unit == value.unit)?;
+            Some(Compared { name: format!("{name} {ours}"), truth: truth.value, value: told, covered })
         })
         .filter(|compared| compared.truth != 0.0)
         .collect()

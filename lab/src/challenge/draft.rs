@@ -1,0 +1,84 @@
+//! Drawing all cases, before any is diagnosed.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use anyhow::Result;
+use palpate_cases::python::Python;
+use palpate_cases::{Simulator, Source, Truth, draw, draw_in};
+
+use super::plan::Entry;
+
+/// A case whose recordings lie in a folder of their own.
+#[derive(Debug)]
+pub struct Drawn {
+    /// Holds `rig.toml`, `trial-1.csv` and `trial-2.csv`, and nothing else.
+    pub folder: PathBuf,
+    /// What they conceal.
+    pub truth: Truth,
+}
+
+/// The cases of `entries` under `home`, each in a folder of its own, in their order, by as many threads as there are cores;
+/// and those that could not be drawn, with why. `python` has the simulators of others, where there are any to be asked.
+///
+/// # Errors
+/// Nothing can be written to `home`.
+pub fn draw_all(
+    entries: &[Entry],
+    seed: u64,
+    home: &Path,
+    python: Option<&Python>,
+    done: &(dyn Fn() + Sync),
+) -> Result<(Vec<Drawn>, Vec<String>)> {
+    let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let work = || {
+        let mut own = Player { python, simulators: HashMap::new() };
+        while let Some(entry) = entries.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let drawn = own.play(entry, seed, home);
+            results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((entry, drawn));
+            done();
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
+    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let place = |entry: &Entry| entries.iter().position(|other| other.index == entry.index);
+    results.sort_by_key(|(entry, _)| place(entry));
+    let (mut drawn, mut failed) = (Vec::new(), Vec::new());
+    for (entry, result) in results {
+        match result {
+            Ok(case) => drawn.push(case),
+            Err(error) => failed.push(format!("case {} ({}): {error:#}", entry.index, entry.source.name())),
+        }
+    }
+    Ok((drawn, failed))
+}
+
+/// One thread's simulators, started when they are first asked for.
+struct Player<'a> {
+    python: Option<&'a Python>,
+    simulators: HashMap<Source, Simulator>,
+}
+
+impl Player<'_> {
+    fn play(&mut self, entry: &Entry, seed: u64, home: &Path) -> Result<Drawn> {
+        let case = match (entry.source, self.python) {
+            (Source::Own, _) => draw(seed, entry.index, &entry.wish)?,
+            (source, Some(python)) => {
+                if !self.simulators.contains_key(&source) {
+                    self.simulators.insert(source, Simulator::start(python, source)?);
+                }
+                match self.simulators.get_mut(&source) {
+                    Some(simulator) => draw_in(simulator, seed, entry.index, &entry.wish)?,
+                    None => anyhow::bail!("{} was started and is gone", source.name()),
+                }
+            }
+            (source, None) => anyhow::bail!("{} is not installed", source.name()),
+        };
+        let folder = home.join(format!("case-{:04}", entry.index));
+        case.write(&folder)?;
+        Ok(Drawn { folder, truth: case.truth })
+    }
+}

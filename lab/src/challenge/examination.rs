@@ -1,0 +1,42 @@
+//! One diagnosis: the command that a user runs, on plain files, in a folder that holds nothing else.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use anyhow::{Context as _, Result};
+
+use super::draft::Drawn;
+use super::row::Row;
+use super::told::Told;
+
+/// Where the command leaves its answer.
+const ANSWER: &str = "diagnosis.json";
+
+/// Runs `tool diagnose` on `case` and scores what it tells.
+///
+/// # Errors
+/// The command cannot be started.
+pub fn examine(tool: &Path, case: &Drawn) -> Result<Row> {
+    let start = Instant::now();
+    let output = Command::new(tool)
+        .args(["diagnose", "--rig", "rig.toml", "trial-1.csv", "trial-2.csv", "--json", ANSWER])
+        .current_dir(&case.folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .output()
+        .with_context(|| format!("cannot run {}", tool.display()))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let told = if output.status.success() {
+        told(&case.folder.join(ANSWER))
+    } else {
+        let said = String::from_utf8_lossy(&output.stderr);
+        Err(said.lines().last().unwrap_or("it said nothing").to_owned())
+    };
+    Ok(Row::score(&case.truth, told, seconds))
+}
+
+fn told(path: &Path) -> Result<Told, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("no answer was written: {error}"))?;
+    serde_json::from_str(&text).map_err(|error| format!("an answer that is none of palpate.diagnosis/1: {error}"))
+}

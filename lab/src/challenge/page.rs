@@ -1,0 +1,210 @@
+//! The page of a challenge: one self-contained file.
+
+mod concealed;
+mod confusion;
+mod failure;
+mod power;
+mod rivals;
+
+use std::io::{self, Write};
+
+use maud::{Markup, html};
+use palpate_cases::Source;
+use palpate_cases::truth::Kind;
+
+use super::interval::of_share;
+use super::row::Row;
+use super::score::Challenge;
+use crate::page::shell;
+
+const STYLE: &str = include_str!("../../assets/challenge.css");
+
+/// Writes the page. It draws one case anew, for the picture of an effect that no eye sees.
+///
+/// # Errors
+/// Whatever `out` reports.
+pub fn write(challenge: &Challenge, out: &mut impl Write) -> io::Result<()> {
+    shell::open("palpate challenge", STYLE, out)?;
+    let body = html! {
+        (opening(challenge))
+        (aims(challenge))
+        (power::section(challenge))
+        (concealed::section(challenge))
+        (rivals::section(challenge))
+        (sources(challenge))
+        (confusion::section(challenge))
+        (failure::section(challenge))
+        (protocol(challenge))
+    };
+    out.write_all(body.0.as_bytes())?;
+    shell::close(&html! {}, "", out)
+}
+
+fn opening(challenge: &Challenge) -> Markup {
+    let large: Vec<&Row> = select(challenge, |row| row.kind == Kind::Single && row.strength >= 1.0);
+    let right = large.iter().filter(|row| row.is_right()).count();
+    html! {
+        p.eyebrow { "palpate challenge, seed " (challenge.seed) ", " (challenge.cases) " recordings with concealed physics" }
+        h1 {
+            "Nothing missing: " (challenge.none.n - challenge.none.false_alarms) " of " (challenge.none.n) " left alone. An effect at least as \
+             large as the noise: " (right) " of " (large.len()) " named rightly."
+        }
+        p.lead {
+            "Each recording was made by a simulator with physics that its rig file does not know, or with none; the answers were sealed; \
+             then each was diagnosed by the command that a user runs, which sees the rig file and two trials and nothing else."
+        }
+        @for what in &challenge.left_out { p.notices { "Left out: " (what) } }
+    }
+}
+
+fn select(challenge: &Challenge, is: impl Fn(&Row) -> bool) -> Vec<&Row> {
+    challenge.rows.iter().filter(|row| is(row)).collect()
+}
+
+/// A line of the table of aims: what, hits, of, aim in words, the aim as a share.
+struct Aim<'a> {
+    what: &'a str,
+    hits: usize,
+    of: usize,
+    aim: &'a str,
+    least: Option<f64>,
+}
+
+fn aims(challenge: &Challenge) -> Markup {
+    let line = |what, rows: Vec<&Row>, is: &dyn Fn(&Row) -> bool, aim, least| Aim {
+        what,
+        hits: rows.iter().filter(|row| is(row)).count(),
+        of: rows.len(),
+        aim,
+        least,
+    };
+    let single = |row: &Row| row.kind == Kind::Single;
+    let large = |row: &Row| single(row) && row.strength >= 1.0;
+    let third = |row: &Row| single(row) && (0.2..0.45).contains(&row.strength);
+    let none = select(challenge, |row| row.kind == Kind::None);
+    let pairs = select(challenge, |row| row.kind == Kind::Pair);
+    let outside = select(challenge, |row| row.kind == Kind::Outside);
+    let values: Vec<_> = challenge.rows.iter().flat_map(|row| &row.values).collect();
+    let covered = values.iter().filter(|value| value.covered).count();
+    let lines = [
+        line("Nothing missing: left alone", none, &|row| !row.is_false_alarm(), "99 %", Some(0.99)),
+        line(
+            "One effect, at least as large as the floor: named rightly",
+            select(challenge, large),
+            &Row::is_right,
+            "95 %",
+            Some(0.95),
+        ),
+        line("The same, truth within answer and rivals", select(challenge, large), &Row::is_within, "95 %", Some(0.95)),
+        line(
+            "One effect of 0.2 to 0.45 of the floor: detected",
+            select(challenge, third),
+            &Row::is_detected,
+            "50 %",
+            Some(0.5),
+        ),
+        line("One effect of any strength: named rightly", select(challenge, single), &Row::is_right, "", None),
+        line("Two effects: both named and nothing else", pairs, &Row::is_right, "85 %", Some(0.85)),
+        line("Outside the list: called unknown", outside, &Row::is_owned, "95 %", Some(0.95)),
+        Aim {
+            what: "Intervals of parameters that hold the truth",
+            hits: covered,
+            of: values.len(),
+            aim: "90 to 97 %",
+            least: Some(0.9),
+        },
+    ];
+    html! {
+        section {
+            h2 { "What was aimed at, and what came out" }
+            div.wide { table.aims {
+                thead { tr { th { "concealed" } th { "hits" } th { "of" } th { "share" } th { "95 % interval" } th { "aim" } th {} } }
+                tbody { @for line in lines.iter().filter(|line| line.of > 0) { (row_of(line)) } }
+            } }
+            p.fine {
+                "Names offered where something was detected: " (format!("{:.2}", challenge.single.mean_set_size)) " in the mean (aim 1.5). \
+                 Parameters: median error " (format!("{:.1}", 100.0 * challenge.parameters.median_error)) " % (aim 5 %). Held-out residual over the \
+                 floor where rightly named, medians: " (format!("{:.2}", challenge.residual_over_floor.before_median)) " before, "
+                (format!("{:.2}", challenge.residual_over_floor.after_median)) " after (aim 1.2). A diagnosis took "
+                (format!("{:.1}", challenge.seconds_median)) " s (median)."
+            }
+        }
+    }
+}
+
+fn row_of(line: &Aim<'_>) -> Markup {
+    let [low, high] = of_share(line.hits, line.of);
+    let share = line.hits as f64 / line.of as f64;
+    let told = line.least.map(|least| match () {
+        () if share >= least => ("met", "met"),
+        () if high >= least => ("open", "within the interval"),
+        () => ("missed", "missed"),
+    });
+    html! {
+        tr {
+            th { (line.what) } td { (line.hits) } td { (line.of) } td { (percent(share)) }
+            td { (percent(low)) " to " (percent(high)) } td { (line.aim) }
+            td { @if let Some((class, word)) = told { span class=(class) { (word) } } }
+        }
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0}\u{a0}%", 100.0 * share)
+}
+
+fn sources(challenge: &Challenge) -> Markup {
+    let of = |source: Source| select(challenge, |row| row.source == source);
+    let cell = |rows: &[&Row], kind: &dyn Fn(&Row) -> bool, is: &dyn Fn(&Row) -> bool| {
+        let rows: Vec<_> = rows.iter().filter(|row| kind(row)).collect();
+        let hits = rows.iter().filter(|row| is(row)).count();
+        if rows.is_empty() { String::new() } else { format!("{hits} of {}", rows.len()) }
+    };
+    html! {
+        section {
+            h2 { "Whose simulation" }
+            p { "MuJoCo, Drake and Exudyn were written by others, and nobody here tuned what they give." }
+            div.wide { table {
+                thead { tr { th { "simulator" } th { "cases" } th { "nothing missing: left alone" } th { "one effect, at least the floor: right" } th { "two: right" } th { "outside: owned" } } }
+                tbody { @for source in Source::ALL {
+                    @let rows = of(source);
+                    @if !rows.is_empty() { tr {
+                        th { (title(source)) } td { (rows.len()) }
+                        td { (cell(&rows, &|row| row.kind == Kind::None, &|row| !row.is_false_alarm())) }
+                        td { (cell(&rows, &|row| row.kind == Kind::Single && row.strength >= 1.0, &Row::is_right)) }
+                        td { (cell(&rows, &|row| row.kind == Kind::Pair, &Row::is_right)) }
+                        td { (cell(&rows, &|row| row.kind == Kind::Outside, &Row::is_owned)) }
+                    } }
+                } }
+            } }
+        }
+    }
+}
+
+fn title(source: Source) -> &'static str {
+    match source {
+        Source::Own => "ours",
+        Source::Mujoco => "MuJoCo",
+        Source::Drake => "Drake",
+        Source::Exudyn => "Exudyn",
+    }
+}
+
+fn protocol(challenge: &Challenge) -> Markup {
+    html! {
+        section {
+            h2 { "How it was done" }
+            ol {
+                li { "Cases were drawn from the seed: what is concealed, its form and its strength, the rig and how wrong its file states it, sensors, trajectories, channels." }
+                li { "Each was written as a rig file and two recordings, in a folder of its own. The answers were committed to by SHA-256 "
+                    code { (challenge.sealed_sha256) } " before the first diagnosis." }
+                li { "Each was diagnosed by " code { "palpate diagnose --rig rig.toml trial-1.csv trial-2.csv" } " in its folder." }
+                li { "The seal was opened, held against the commitment, and the answers were scored." }
+            }
+            p.fine {
+                "Strength is the root mean square that the nominal physics cannot take up, over the floor of the sensor. The same seed gives the same \
+                 recordings and the same commitment: " code { "palpate challenge --cases " (challenge.cases) " --seed " (challenge.seed) } "."
+            }
+        }
+    }
+}

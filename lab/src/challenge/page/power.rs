@@ -1,0 +1,82 @@
+//! How small an effect may be and still be found: shares against strength.
+
+use maud::{Markup, html};
+
+use super::super::interval::of_share;
+use super::super::score::{Band, Challenge};
+
+/// px down; shares of the width across.
+const TOP: f64 = 14.0;
+const BOTTOM: f64 = 214.0;
+const LEFT: f64 = 0.1;
+const RIGHT: f64 = 0.98;
+
+pub(super) fn section(challenge: &Challenge) -> Markup {
+    let bands = &challenge.single.by_strength;
+    if bands.is_empty() {
+        return html! {};
+    }
+    html! {
+        section {
+            h2 { "How small may it be" }
+            p {
+                "One effect of the list, by its strength: one is as large as the floor of the sensor. A point is a share of the cases of its \
+                 band, a bar what chance allows it to be (95 %)."
+            }
+            p.legend { span.detected { "● something is said to be missing" } "  " span.right { "● named rightly, and nothing else" } }
+            svg.power role="img" aria-label=(label(bands)) height="268" {
+                @for tick in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                    line.grid x1=(across(LEFT)) x2=(across(RIGHT)) y1=(y(tick)) y2=(y(tick)) {}
+                    text.soft x=(across(LEFT - 0.015)) y=(y(tick) + 4.0) text-anchor="end" { (format!("{:.0} %", 100.0 * tick)) }
+                }
+                @for (at, band) in bands.iter().enumerate() { (column(bands, at, band)) }
+            }
+        }
+    }
+}
+
+fn column(bands: &[Band], at: usize, band: &Band) -> Markup {
+    let pitch = (RIGHT - LEFT) / bands.len() as f64;
+    let middle = LEFT + (at as f64 + 0.5) * pitch;
+    html! {
+        (point("detected", middle - 0.12 * pitch, band.detected, band.n))
+        (point("right", middle + 0.12 * pitch, band.named_rightly, band.n))
+        text x=(across(middle)) y=(BOTTOM + 22.0) text-anchor="middle" { (name(band)) }
+        text.soft x=(across(middle)) y=(BOTTOM + 40.0) text-anchor="middle" { (band.n) " cases" }
+    }
+}
+
+fn point(class: &str, x: f64, hits: usize, of: usize) -> Markup {
+    let [low, high] = of_share(hits, of);
+    let share = hits as f64 / of.max(1) as f64;
+    html! {
+        g class=(class) {
+            title { (hits) " of " (of) }
+            line x1=(across(x)) x2=(across(x)) y1=(y(low)) y2=(y(high)) {}
+            circle cx=(across(x)) cy=(y(share)) r="5.5" {}
+        }
+    }
+}
+
+fn name(band: &Band) -> String {
+    match (band.from, band.to) {
+        (from, to) if from == 0.0 => format!("below {to}"),
+        (from, to) if to >= 1000.0 => format!("above {from}"),
+        (from, to) => format!("{from} to {to}"),
+    }
+}
+
+fn label(bands: &[Band]) -> String {
+    let told = |band: &Band| {
+        format!("{}: {} of {} detected, {} named rightly", name(band), band.detected, band.n, band.named_rightly)
+    };
+    bands.iter().map(told).collect::<Vec<_>>().join("; ")
+}
+
+fn y(share: f64) -> f64 {
+    BOTTOM - share * (BOTTOM - TOP)
+}
+
+fn across(share: f64) -> String {
+    format!("{:.2}%", 100.0 * share)
+}
