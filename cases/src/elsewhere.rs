@@ -13,11 +13,10 @@ use crate::world::{Offer, Source, World};
 
 mod child;
 pub mod offer;
-pub mod python;
 pub mod shape;
 
+use crate::python::Python;
 use child::{Answer, Child};
-use python::Python;
 use shape::Named;
 
 /// A simulator that waits for trials.

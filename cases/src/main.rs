@@ -1,14 +1,17 @@
 //! `cases`: writes recordings with concealed physics, and the answers beside them.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
-use palpate_cases::elsewhere::python;
+use palpate_cases::python;
 use palpate_cases::reference::Kind as Reference;
+use palpate_cases::rivals::Rival;
 use palpate_cases::sensors::Grade;
 use palpate_cases::world::{Own, Source, World};
 use palpate_cases::{Simulator, What, Wish, draw_in};
+use serde::Serialize;
 
 /// Recordings of simulated rigs with concealed physics
 #[derive(Debug, Parser)]
@@ -44,9 +47,12 @@ struct Cli {
     /// Whose simulation makes them
     #[arg(long, default_value = "own")]
     source: Maker,
-    /// Folder in which Python packages are set up for the simulators of others
+    /// Folder in which Python packages are set up for the tools of others
     #[arg(long, default_value = "target/python")]
     python_home: PathBuf,
+    /// Have PySINDy and SysIdentPy look at each case, and write what they find beside the answers
+    #[arg(long)]
+    rivals: bool,
     /// Folder to write to
     #[arg(long)]
     out: PathBuf,
@@ -137,14 +143,27 @@ fn main() -> Result<()> {
 
 fn write_all<W: World>(cli: &Cli, world: &mut W) -> Result<()> {
     let wish = cli.wish();
-    let mut truths = Vec::new();
+    let rivals = cli.rivals.then(|| python::set_up(&cli.python_home, &python::RIVALS)).transpose()?;
+    let (mut truths, mut findings) = (Vec::new(), Vec::new());
     for index in 0..cli.count {
         let case = draw_in(world, cli.seed, index, &wish)?;
-        case.write(&cli.out.join(format!("case-{index:04}")))?;
+        let folder = cli.out.join(format!("case-{index:04}"));
+        case.write(&folder)?;
         truths.push(case.truth);
+        if let Some(python) = &rivals {
+            let found = Rival::ALL.into_iter().map(|rival| Ok((rival.name(), rival.look(python, &folder)?)));
+            findings.push(found.collect::<Result<BTreeMap<_, _>>>()?);
+        }
     }
     std::fs::create_dir_all(&cli.out).with_context(|| format!("cannot make {}", cli.out.display()))?;
-    let path = cli.out.join("truth.json");
-    let text = serde_json::to_string_pretty(&truths)?;
-    std::fs::write(&path, text + "\n").with_context(|| format!("cannot write {}", path.display()))
+    write_json(&cli.out.join("truth.json"), &truths)?;
+    if rivals.is_some() {
+        write_json(&cli.out.join("rivals.json"), &findings)?;
+    }
+    Ok(())
+}
+
+fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value)?;
+    std::fs::write(path, text + "\n").with_context(|| format!("cannot write {}", path.display()))
 }

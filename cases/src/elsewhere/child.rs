@@ -10,8 +10,8 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use super::python::Python;
 use crate::effect::Parameter;
+use crate::python::Python;
 use crate::simulate::{Setup, Track};
 
 /// The columns of an answer, in their order.

@@ -29,12 +29,24 @@ pub struct Packages {
 pub const SIMULATORS: Packages = Packages {
     name: "simulators",
     purpose: "to make recordings that nobody here tuned",
-    requirements: include_str!("../../simulators/requirements.txt"),
+    requirements: include_str!("../simulators/requirements.txt"),
     scripts: &[
-        ("protocol.py", include_str!("../../simulators/protocol.py")),
-        ("mujoco.py", include_str!("../../simulators/mujoco.py")),
-        ("drake.py", include_str!("../../simulators/drake.py")),
-        ("exudyn.py", include_str!("../../simulators/exudyn.py")),
+        ("protocol.py", include_str!("../simulators/protocol.py")),
+        ("mujoco.py", include_str!("../simulators/mujoco.py")),
+        ("drake.py", include_str!("../simulators/drake.py")),
+        ("exudyn.py", include_str!("../simulators/exudyn.py")),
+    ],
+};
+
+/// PySINDy and SysIdentPy.
+pub const RIVALS: Packages = Packages {
+    name: "rivals",
+    purpose: "to see what others find in the same recordings",
+    requirements: include_str!("../rivals/requirements.txt"),
+    scripts: &[
+        ("signals.py", include_str!("../rivals/signals.py")),
+        ("pysindy.py", include_str!("../rivals/pysindy.py")),
+        ("sysidentpy.py", include_str!("../rivals/sysidentpy.py")),
     ],
 };
 
@@ -69,7 +81,10 @@ impl Python {
     pub fn command(&self, script: &Path) -> Command {
         let mut command = Command::new(&self.interpreter);
         // One thread a process: whoever wants more starts more processes.
-        command.args(["-I", "-B"]).arg(script).envs([("OMP_NUM_THREADS", "1"), ("OPENBLAS_NUM_THREADS", "1")]);
+        command
+            .args(["-I", "-B", "-W", "ignore"])
+            .arg(script)
+            .envs([("OMP_NUM_THREADS", "1"), ("OPENBLAS_NUM_THREADS", "1")]);
         command
     }
 
