@@ -41,20 +41,30 @@ pub fn write(challenge: &Challenge, out: &mut impl Write) -> io::Result<()> {
 }
 
 fn opening(challenge: &Challenge) -> Markup {
-    let large: Vec<&Row> = select(challenge, |row| row.kind == Kind::Single && row.strength >= 1.0);
-    let right = large.iter().filter(|row| row.is_right()).count();
     html! {
         p.eyebrow { "palpate challenge, seed " (challenge.seed) ", " (challenge.cases) " recordings with concealed physics" }
-        h1 {
-            "Nothing missing: " (challenge.none.n - challenge.none.false_alarms) " of " (challenge.none.n) " left alone. An effect at least as \
-             large as the noise: " (right) " of " (large.len()) " named rightly."
-        }
+        h1 { (headline(challenge)) }
         p.lead {
             "Each recording was made by a simulator with physics that its rig file does not know, or with none; the answers were sealed; \
              then each was diagnosed by the command that a user runs, which sees the rig file and two trials and nothing else."
         }
         @for what in &challenge.left_out { p.notices { "Left out: " (what) } }
     }
+}
+
+fn headline(challenge: &Challenge) -> String {
+    let large: Vec<&Row> = select(challenge, |row| row.kind == Kind::Single && row.strength >= 1.0);
+    let right = large.iter().filter(|row| row.is_right()).count();
+    let mut parts = Vec::new();
+    if challenge.none.n > 0 {
+        let quiet = challenge.none.n - challenge.none.false_alarms;
+        parts.push(format!("Nothing missing: {quiet} of {} left alone.", challenge.none.n));
+    }
+    if !large.is_empty() {
+        let of = large.len();
+        parts.push(format!("An effect at least as large as the noise: {right} of {of} named rightly."));
+    }
+    if parts.is_empty() { "Recordings with concealed physics".to_owned() } else { parts.join(" ") }
 }
 
 fn select(challenge: &Challenge, is: impl Fn(&Row) -> bool) -> Vec<&Row> {

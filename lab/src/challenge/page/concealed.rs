@@ -36,7 +36,7 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
             p {
                 "Case " (row.index) ": " (row.truth.join(" and ").replace('_', " ")) " of " (format!("{:.2}", row.strength))
                 " of the floor. Recorded force and the simulation without it, values refitted, lie over one another; row by row the difference \
-                 is noise, and the effect, as the tool models it, runs within. The tool says: " strong { (picture.named) } "."
+                 is noise, and the effect, as the tool models it, runs within. The tool says: " strong { (picture.named) }
             }
             (panel("Force over time", &picture.unit, &picture.time, &[("recorded", &picture.recorded), ("simulated", &picture.simulated)]))
             p.legend { span.recorded { "● recorded" } "  " span.simulated { "━ simulated without the effect" } }

@@ -16,7 +16,7 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
             h2 { "What failed" }
             p { (failures.len()) " of " (challenge.cases) " were not answered rightly, the strongest first." }
             div.wide { table {
-                thead { tr { th { "case" } th { "concealed" } th { "strength" } th { "said" } th { "how" } th { "what made it hard" } } }
+                thead { tr { th { "case" } th.text { "concealed" } th { "strength" } th.text { "said" } th.text { "how" } th.text { "what made it hard" } } }
                 tbody { @for row in failures { (line(row)) } }
             } }
         }

@@ -42,7 +42,7 @@ fn column(bands: &[Band], at: usize, band: &Band) -> Markup {
         (point("detected", middle - 0.12 * pitch, band.detected, band.n))
         (point("right", middle + 0.12 * pitch, band.named_rightly, band.n))
         text x=(across(middle)) y=(BOTTOM + 22.0) text-anchor="middle" { (name(band)) }
-        text.soft x=(across(middle)) y=(BOTTOM + 40.0) text-anchor="middle" { (band.n) " cases" }
+        text.soft x=(across(middle)) y=(BOTTOM + 40.0) text-anchor="middle" { (band.n) @if band.n == 1 { " case" } @else { " cases" } }
     }
 }
 
