@@ -217,7 +217,7 @@ def play(rig, loop, effects, reference):
         return True
 
     mbs.SetPreStepUserFunction(control)
-    mbs.SolveDynamic(settings(rows, step), solverType=exudyn.DynamicSolverType.TrapezoidalIndex2)
+    mbs.SolveDynamic(settings(rows, step), solverType=exudyn.DynamicSolverType.ExplicitMidpoint)
     position, velocity = (mbs.GetSensorStoredData(sensor)[:, 1] for sensor in model.states)
     force = sum(sign * mbs.GetSensorStoredData(sensor)[:, 1 + at] for sensor, at, sign in model.forces)
     track.position, track.velocity, track.force = (all[: rows * STEPS : STEPS] for all in (position, velocity, force))

@@ -160,13 +160,13 @@ fn drake_plays_the_nominal_rig_and_its_effects() {
 #[test]
 fn exudyn_plays_the_nominal_rig_and_its_effects() {
     let effects = [
-        ("nonlinear_stiffness", 0.3, 0.15),
+        ("nonlinear_stiffness", 0.3, 0.05),
         ("coulomb_friction", 2.0, 0.5),
         ("stribeck_friction", 3.0, 0.5),
-        ("gravity_load", 5.0, 0.15),
-        ("transmission_compliance", 150.0, 0.15),
+        ("gravity_load", 5.0, 0.05),
+        ("transmission_compliance", 150.0, 0.05),
     ];
-    alike(Source::Exudyn, 0.1, &effects);
+    alike(Source::Exudyn, 0.03, &effects);
 }
 
 /// RMS over the floor of the mean force against `law` of depth, velocity and acceleration, all means over a
