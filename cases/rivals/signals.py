@@ -138,17 +138,13 @@ def together(parts):
     return float(np.sqrt(sum(value * value * count for value, count in parts) / total)) if total else None
 
 
-# What a model must foretell better than the nominal law, as a share of its residual. The encoder's steps come back
-# through the controller into the effort, so that terms of the drive foretell up to 13 % of it where there is nothing.
-GAIN = {"contact": 0.02, "free": 0.02, "drive": 0.15}
-
-
-def judge(name, trials, terms, fit, nominal, left, raw):
+def judge(gain, trials, terms, fit, nominal, left, raw):
     """Fits each of two trials and foretells the other; the terms that both fits keep, and for each direction what is
     left of the raw readings, what the refitted nominal law leaves, and their count.
 
     `terms(rows)` is a library by name, `fit(library, target)` returns the kept terms and a function that foretells from
-    another library. No term is kept that does not foretell the unseen trial better than the nominal law both ways.
+    another library. No term is kept unless the model foretells the unseen trial better than the nominal law both ways,
+    by the share `gain` of its residual.
     """
     kept, measured = [], []
     for seen, unseen in ((0, 1), (1, 0)):
@@ -159,7 +155,7 @@ def judge(name, trials, terms, fit, nominal, left, raw):
         wanted = raw(trials[unseen])
         measured.append((rms(wanted - ahead(others)), rms(wanted - stack(others, nominal) @ law), len(wanted)))
         kept.append(set(names))
-    if any(held > (1.0 - GAIN[name]) * refitted for held, refitted, _ in measured):
+    if any(held > (1.0 - gain) * refitted for held, refitted, _ in measured):
         return set(), measured
     return kept[0] & kept[1], measured
 

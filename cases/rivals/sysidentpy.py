@@ -35,6 +35,9 @@ from sysidentpy.basis_function import Polynomial  # noqa: E402
 from sysidentpy.model_structure_selection import FROLS  # noqa: E402
 from sysidentpy.parameter_estimation import LeastSquares  # noqa: E402
 
+# What a model must foretell better than the nominal law, as a share of its residual. The encoder's steps come back
+# through the controller into the effort, so that terms of the drive foretell up to 13 % of it where there is nothing.
+GAIN = {"contact": 0.02, "free": 0.02, "drive": 0.15}
 DEGREE = {"contact": 3, "free": 1, "drive": 2}
 NOMINAL = {"contact": ("p", "v", "1"), "free": (), "drive": ("a", "v")}
 MEANING = {
@@ -144,7 +147,7 @@ def balance(name, trials, left, raw, scene):
     def one(library, target):
         return fit(library, target, DEGREE[name])
 
-    kept, measured = judge(name, trials, terms, one, NOMINAL[name], left, raw)
+    kept, measured = judge(GAIN[name], trials, terms, one, NOMINAL[name], left, raw)
     return {MEANING[name][term] for term in kept if term in MEANING[name]}, measured
 
 
