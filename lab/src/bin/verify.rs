@@ -3,6 +3,7 @@
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
+use palpate_cases::python;
 use palpate_lab::device::project;
 use palpate_lab::recordings;
 use palpate_lab::tools::{self, Leave, Missing, TARGET};
@@ -35,18 +36,26 @@ fn main() -> ExitCode {
 
 fn verify(strict: bool) -> anyhow::Result<bool> {
     let mut left_out = Vec::new();
-    let mut ready = |what: &str, found: Result<(), Missing>| match found {
+    let mut ready = |what: &str, found: Result<(), String>| match found {
         Ok(()) => true,
         Err(missing) => {
             left_out.push(format!("{what}: {missing}"));
             false
         }
     };
-    let rustfmt = ready("formatting", tools::component("rustfmt", "fmt", Leave::Install));
-    let clippy = ready("lints", tools::component("clippy", "clippy", Leave::Install));
-    let target = ready("the device's image", tools::cross_target(Leave::Install));
-    let device = target & ready("the device's tests", tools::qemu(Leave::Install).map(drop));
+    let told = |found: Result<(), Missing>| found.map_err(|missing| missing.to_string());
+    let rustfmt = ready("formatting", told(tools::component("rustfmt", "fmt", Leave::Install)));
+    let clippy = ready("lints", told(tools::component("clippy", "clippy", Leave::Install)));
+    let target = ready("the device's image", told(tools::cross_target(Leave::Install)));
+    let device = target & ready("the device's tests", told(tools::qemu(Leave::Install).map(drop)));
     let folder = project()?;
+    for (what, packages) in [
+        ("the tests in MuJoCo, Drake and Exudyn", &python::SIMULATORS),
+        ("the tests of PySINDy and SysIdentPy", &python::RIVALS),
+    ] {
+        let found = python::set_up(&folder.join("target").join("python"), packages);
+        ready(what, found.map(drop).map_err(|missing| missing.to_string()));
+    }
     let mut failed = Vec::new();
     for check in checks(rustfmt, clippy, target, device) {
         println!("\n== {}: cargo {}", check.name, check.arguments.join(" "));
