@@ -9,6 +9,8 @@ use palpate::{Bench, BenchConfig, BlockConfig, Flags, Method, Sensors, StreamCon
 
 const SEEDS: u64 = 150;
 
+const LAWS: usize = Method::ALL.len();
+
 /// Of one method, for K and B: how often anything was claimed, how often the truth then lay inside, the half-widths.
 #[derive(Debug, Clone, Copy, Default)]
 struct Coverage {
@@ -26,12 +28,12 @@ impl Coverage {
     }
 }
 
-fn measure(trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; 9] {
+fn measure(trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; LAWS] {
     measure_with(&BenchConfig::every(StreamConfig::BENCH), trial, truth, from)
 }
 
-fn measure_with(settings: &BenchConfig, trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; 9] {
-    let mut coverage = [Coverage::default(); 9];
+fn measure_with(settings: &BenchConfig, trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; LAWS] {
+    let mut coverage = [Coverage::default(); LAWS];
     let mut noise = Noise::new(77);
     for seed in 0..SEEDS {
         let surface = 1e-4 * (noise.uniform() - 0.5);
@@ -64,7 +66,7 @@ fn measure_with(settings: &BenchConfig, trial: &Trial, truth: [f64; 2], from: us
     coverage
 }
 
-fn report(name: &str, coverage: &[Coverage; 9]) {
+fn report(name: &str, coverage: &[Coverage; LAWS]) {
     for (method, c) in Method::ALL.iter().zip(coverage) {
         let [k, b] = [0, 1].map(|axis| {
             let [claimed, inside, width] = c.shares(axis).map(|share| 100.0 * share);
@@ -85,7 +87,7 @@ struct Demand {
 ///
 /// Of 150 benches an honest 95 % leaves 89 to 99 % inside. The surface error is bounded, not Gaussian, and its bound
 /// is added in full, so more than 95 % is expected; what keeps the upper side honest is the width.
-fn assert_covered(coverage: &[Coverage; 9], methods: &[Method], demand: &Demand) {
+fn assert_covered(coverage: &[Coverage; LAWS], methods: &[Method], demand: &Demand) {
     for (method, c) in Method::ALL.iter().zip(coverage).filter(|(method, _)| methods.contains(method)) {
         for (axis, least) in [0.90, 0.85].into_iter().enumerate() {
             let [known, inside, width] = c.shares(axis);

@@ -6,6 +6,7 @@ mod golden;
 mod intervals;
 mod invariants;
 mod mathematics;
+mod models;
 mod parity;
 mod recordings;
 mod recovery;

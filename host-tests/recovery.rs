@@ -33,7 +33,7 @@ fn memory(method: Method) -> f64 {
 fn every_law_finds_stiffness_and_damping_within_four_deviations_of_the_noise() {
     let ideal = Trial { position_count: 0.0, force_count: 0.0, ..Trial::bench("K 300, B 5", |_| (300.0, 5.0)) };
     let trial = long(ideal);
-    let mut worst = [Theta::zeros(); 9];
+    let mut worst = [Theta::zeros(); Method::ALL.len()];
     for seed in 1..=20 {
         let mut bench = bench(StreamConfig::BENCH);
         let last = rig::run(&mut bench, &trial.samples(seed)).pop().expect("samples").expect("a good sample");

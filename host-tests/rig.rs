@@ -1,8 +1,9 @@
-//! All nine laws on one stream, with the settings of the paper.
+//! All laws on one stream, with the settings of the paper.
 
 use palpate::{
-    Bench, BenchConfig, BenchEstimates, BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares,
-    Direction, Estimate, Ewrls, EwrlsConfig, Gradient, GradientConfig, Law, Method, Observation, Rejection, ResetRls,
+    AdaptiveWindow, AdaptiveWindowConfig, Bench, BenchConfig, BenchEstimates, BlockConfig, BlockLeastMeanFourth,
+    BlockLeastMeanSquare, BlockLeastSquares, CusumRls, CusumRlsConfig, Direction, DirectionalRls, DirectionalRlsConfig,
+    Estimate, Ewrls, EwrlsConfig, Gradient, GradientConfig, Law, Method, Observation, Rejection, ResetRls,
     ResetRlsConfig, Sample, Sprls, SprlsConfig, Step, StreamConfig, Window,
 };
 
@@ -59,8 +60,8 @@ impl Bare {
         Self { method, update: Box::new(update) }
     }
 
-    /// All nine, with the settings of the paper.
-    pub fn all() -> [Self; 9] {
+    /// All of them, with the settings of the paper where it has any.
+    pub fn all() -> [Self; 12] {
         const SOUND: &str = "sound settings";
         let block = BlockConfig::default();
         let fourth = |direction| BlockLeastMeanFourth::new(block, direction).expect(SOUND);
@@ -74,6 +75,9 @@ impl Bare {
             Self::new(Method::Blms, BlockLeastMeanSquare::new(block).expect(SOUND)),
             Self::new(Method::Blmf, fourth(Direction::SteepestDescent)),
             Self::new(Method::NewtonBlmf, fourth(Direction::Newton)),
+            Self::new(Method::CusumRls, CusumRls::new(CusumRlsConfig::default()).expect(SOUND)),
+            Self::new(Method::AdaptiveBls, AdaptiveWindow::new(AdaptiveWindowConfig::default()).expect(SOUND)),
+            Self::new(Method::DirectionalRls, DirectionalRls::new(DirectionalRlsConfig::default()).expect(SOUND)),
         ]
     }
 }

@@ -1,10 +1,13 @@
 //! All estimators side by side on one stream: what `palpate replay` runs on the host and the bench image on the device.
 
+use crate::adaptive_window::{AdaptiveWindow, AdaptiveWindowConfig};
 use crate::block::BlockConfig;
 use crate::block_lmf::{BlockLeastMeanFourth, Direction};
 use crate::block_lms::BlockLeastMeanSquare;
 use crate::block_ls::BlockLeastSquares;
 use crate::contact::Sample;
+use crate::cusum_rls::{CusumRls, CusumRlsConfig};
+use crate::directional_rls::{DirectionalRls, DirectionalRlsConfig};
 use crate::error::{ConfigError, require};
 use crate::estimate::Estimate;
 use crate::ewrls::{Ewrls, EwrlsConfig};
@@ -37,11 +40,17 @@ pub enum Method {
     Blmf,
     /// Block least mean fourth along the Newton direction.
     NewtonBlmf,
+    /// Recursive least squares that begins again at a change.
+    CusumRls,
+    /// Block least squares over a window that shrinks at a change.
+    AdaptiveBls,
+    /// Recursive least squares with directional forgetting.
+    DirectionalRls,
 }
 
 impl Method {
     /// All of them, in the order of [`BenchEstimates`].
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::Rls,
         Self::Ewrls,
         Self::Sprls,
@@ -51,6 +60,9 @@ impl Method {
         Self::Blms,
         Self::Blmf,
         Self::NewtonBlmf,
+        Self::CusumRls,
+        Self::AdaptiveBls,
+        Self::DirectionalRls,
     ];
 
     /// The name on the command line and in file columns.
@@ -65,6 +77,9 @@ impl Method {
             Self::Blms => "blms",
             Self::Blmf => "blmf",
             Self::NewtonBlmf => "newton_blmf",
+            Self::CusumRls => "cusum_rls",
+            Self::AdaptiveBls => "adaptive_bls",
+            Self::DirectionalRls => "directional_rls",
         }
     }
 
@@ -80,6 +95,9 @@ impl Method {
             Self::Blms => "block least mean square",
             Self::Blmf => "block least mean fourth",
             Self::NewtonBlmf => "block least mean fourth, Newton direction",
+            Self::CusumRls => "recursive least squares that begins again at a change",
+            Self::AdaptiveBls => "block least squares, window shrinking at a change",
+            Self::DirectionalRls => "recursive least squares with directional forgetting",
         }
     }
 
@@ -127,7 +145,8 @@ pub struct BenchConfig {
     pub reset_rls: ResetRlsConfig,
     /// Of `gradient`.
     pub gradient: GradientConfig,
-    /// Of all block methods; the window at most [`BENCH_WINDOW`].
+    /// Of all block methods; the window, also the longest of `adaptive_bls`, is at most [`BENCH_WINDOW`]. `cusum_rls` and
+    /// `directional_rls` run with their defaults.
     pub block: BlockConfig,
 }
 
@@ -168,6 +187,9 @@ pub struct Bench {
     blms: Tracker<BlockLeastMeanSquare>,
     blmf: Tracker<BlockLeastMeanFourth>,
     newton_blmf: Tracker<BlockLeastMeanFourth>,
+    cusum_rls: Tracker<CusumRls>,
+    adaptive_bls: Tracker<AdaptiveWindow>,
+    directional_rls: Tracker<DirectionalRls>,
 }
 
 impl Bench {
@@ -190,6 +212,9 @@ impl Bench {
             blms: Tracker::new(BlockLeastMeanSquare::new(config.block)?),
             blmf: Tracker::new(fourth(Direction::SteepestDescent)?),
             newton_blmf: Tracker::new(fourth(Direction::Newton)?),
+            cusum_rls: Tracker::new(CusumRls::new(CusumRlsConfig::default())?),
+            adaptive_bls: Tracker::new(AdaptiveWindow::new(AdaptiveWindowConfig::of(config.block.window))?),
+            directional_rls: Tracker::new(DirectionalRls::new(DirectionalRlsConfig::default())?),
         })
     }
 
@@ -214,6 +239,9 @@ impl Bench {
                 Method::Blms => self.blms.follow(stream, &event),
                 Method::Blmf => self.blmf.follow(stream, &event),
                 Method::NewtonBlmf => self.newton_blmf.follow(stream, &event),
+                Method::CusumRls => self.cusum_rls.follow(stream, &event),
+                Method::AdaptiveBls => self.adaptive_bls.follow(stream, &event),
+                Method::DirectionalRls => self.directional_rls.follow(stream, &event),
             }
         }))
     }

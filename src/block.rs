@@ -6,6 +6,7 @@ use crate::error::{ConfigError, require, require_not_negative};
 use crate::flags::Flags;
 use crate::law::Law;
 use crate::memory::{Memory, Moments};
+use crate::prior::Prior;
 use crate::step::Step;
 use crate::sums::Solution;
 use crate::window::Recent;
@@ -24,12 +25,14 @@ pub struct BlockConfig {
     /// Rms rate over the window at and below which B is held, internal units, zero or above. A filter lets the rate of a
     /// held tool die away by decades a second without ever reaching zero; B would be rounding divided by next to nothing.
     pub rate_floor: f32,
+    /// A prior in the least-squares sums, with which `minimum_fill` may be 2; none in the paper.
+    pub prior: Option<Prior>,
 }
 
 impl Default for BlockConfig {
     /// 300 samples, at least 20 of them, 1e-4, and 1e-4 (0.1 mm/s on the bench, less than one count of its encoder in a window).
     fn default() -> Self {
-        Self { window: 300, minimum_fill: 20, independence_floor: 1e-4, rate_floor: 1e-4 }
+        Self { window: 300, minimum_fill: 20, independence_floor: 1e-4, rate_floor: 1e-4, prior: None }
     }
 }
 
@@ -48,6 +51,7 @@ impl BlockConfig {
         )?;
         require((1e-6..=0.1).contains(&self.independence_floor), "independence_floor", "between 1e-6 and 0.1")?;
         require_not_negative(self.rate_floor, "rate_floor")?;
+        self.prior.map(Prior::check).transpose()?;
         Ok(self)
     }
 }
@@ -88,7 +92,7 @@ impl<'a, M: Memory> View<'a, M> {
     #[inline(always)]
     pub fn of(config: &'a BlockConfig, memory: &'a M, recent: Recent<'a>, estimate: Impedance) -> Self {
         let local = memory.local(recent, estimate);
-        let solution = Solution::of(local.second(), config);
+        let solution = Solution::of(local.second(), config, estimate);
         Self { config, recent, memory, estimate, local, solution }
     }
 }

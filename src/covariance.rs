@@ -22,6 +22,11 @@ impl Covariance {
         Self { d1: size, d2: size, u: 0.0 }
     }
 
+    /// `diag(stiffness, damping)`.
+    pub const fn diagonal(stiffness: f32, damping: f32) -> Self {
+        Self { d1: stiffness, d2: damping, u: 0.0 }
+    }
+
     /// One observation of weight one, then division by the forgetting factor. Returns the gain `P phi / s` with
     /// `s = forgetting + phi' P phi` of the covariance before.
     pub fn observe(&mut self, o: &Observation, forgetting: f32) -> Impedance {
@@ -52,6 +57,14 @@ impl Covariance {
         let cut = self.d1 > limit || self.d2 > limit;
         self.d1 = smaller(self.d1, limit);
         self.d2 = smaller(self.d2, limit);
+        cut
+    }
+
+    /// As [`Self::limit`], with a limit of its own for the factor of each parameter.
+    pub fn limit_each(&mut self, limits: Impedance) -> bool {
+        let cut = self.d1 > limits.stiffness || self.d2 > limits.damping;
+        self.d1 = smaller(self.d1, limits.stiffness);
+        self.d2 = smaller(self.d2, limits.damping);
         cut
     }
 

@@ -63,8 +63,9 @@ impl Sensors {
 
 /// Turns what a law found into an [`Estimate`]: internal to SI, confidence to intervals.
 ///
-/// The half-width is `t * sqrt(variance) + |remainder| + |offset_gain * K| * half a count of surface position`, with the
-/// parts of [`crate::Confidence`]. The residual is coloured by the filter, so n samples count as n over
+/// The half-width is `sqrt(t^2 variance + (0.95 offset_gain K * half a count)^2) + |remainder|`, with the parts of
+/// [`crate::Confidence`]: the surface lies anywhere within a count, so 95 % of its places lie within 0.95 of half a count, and
+/// two independent errors add as squares. The residual is coloured by the filter, so n samples count as n over
 /// `correlated_samples`; t is Student's for that number less two, or for ten where the force noise is known beforehand; and
 /// the noise is never taken to be less than that of both sensors. It covers noise, rounding, start-up and a misplaced
 /// surface; not the bias of a model, of [`crate::Velocity::Paper`], or of a motion of angular frequency w sampled every T
@@ -83,6 +84,9 @@ pub struct Assessor {
 impl Assessor {
     /// Share of the value above which an interval is flagged.
     const WIDE: f32 = 0.3;
+
+    /// Share of half a count within which 95 % of the surfaces lie that are anywhere in it.
+    const PLACES: f32 = 0.95;
 
     /// Degrees of freedom that a force noise known beforehand is trusted for.
     const KNOWN: f32 = 10.0;
@@ -130,12 +134,13 @@ impl Assessor {
         let known = self.force_variance + stiffness * stiffness * self.position_variance;
         let measured = c.samples / self.correlated_samples - 2.0;
         let t = student(if self.force_variance > 0.0 { larger(measured, Self::KNOWN) } else { measured });
-        let surface = stiffness.abs() * self.half_count;
+        let surface = Self::PLACES * stiffness * self.half_count;
         let width = |noise: f32, gain: f32, remainder: f32, offset: f32| {
             let variance = larger(noise * self.correlated_samples, known * gain);
             // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
-            let deviation = if variance < 0.0 { 0.0 } else { sqrt(variance) };
-            let width = t * deviation + remainder.abs() + offset.abs() * surface;
+            let variance = if variance < 0.0 { 0.0 } else { variance };
+            let misplaced = offset * surface;
+            let width = sqrt(t * t * variance + misplaced * misplaced) + remainder.abs();
             if width.is_nan() { f32::INFINITY } else { width }
         };
         Impedance {

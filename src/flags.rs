@@ -28,5 +28,7 @@ bitflags::bitflags! {
         const LITTLE_MOVEMENT = 1 << 10;
         /// The covariance was found unsound and set back to its start.
         const RESET = 1 << 11;
+        /// The material was found to have changed at this sample: what was learnt before it counts no more.
+        const CHANGED = 1 << 12;
     }
 }

@@ -34,8 +34,11 @@
 //! |---|---|
 //! | [`Sample`], [`Impedance`] | the model, its units and signs |
 //! | [`FrontEnd`] | penetration, velocity, contact gate; rejection of bad samples |
-//! | [`Ewrls`], [`Sprls`], [`ResetRls`], [`Gradient`] | recursive laws |
+//! | [`CusumRls`] | **the law to take**: recursive, begins again where the material changes |
+//! | [`Ewrls`], [`Sprls`], [`ResetRls`], [`Gradient`], [`DirectionalRls`] | other recursive laws |
 //! | [`BlockLeastSquares`], [`BlockLeastMeanSquare`], [`BlockLeastMeanFourth`] | laws on a window, at the same cost whatever its length |
+//! | [`AdaptiveWindow`] | block least squares whose window shrinks where the material changes |
+//! | [`ContactModel`], [`ModelStream`], [`ParameterRls`] | Hunt-Crossley, force bias or contact plane, tool mass |
 //! | [`direct`] | the same, summed anew at every sample |
 //! | [`Estimate`], [`Flags`] | the answer and its quality |
 //! | [`Identifier`] | all of it for one law |
@@ -46,17 +49,22 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod adaptive_window;
 mod bench;
 mod block;
 mod block_lmf;
 mod block_lms;
 mod block_ls;
+mod change;
 mod confidence;
 mod contact;
+mod contact_model;
 mod covariance;
 pub mod cubic;
+mod cusum_rls;
 pub mod direct;
 mod direct_lmf;
+mod directional_rls;
 mod error;
 mod estimate;
 mod ewrls;
@@ -71,6 +79,9 @@ mod identifier;
 mod law;
 pub mod math;
 mod memory;
+mod model_stream;
+mod parameter_rls;
+mod prior;
 mod propagation;
 mod recursive;
 mod reset_rls;
@@ -83,14 +94,19 @@ mod sym2;
 mod units;
 mod window;
 
+pub use adaptive_window::{AdaptiveWindow, AdaptiveWindowConfig, AdaptiveWindowState};
 pub use bench::{BENCH_WINDOW, Bench, BenchConfig, BenchEstimates, Method, Methods};
 pub use block::{BlockConfig, BlockLaw, BlockState};
 pub use block_lmf::{BlockLeastMeanFourth, Direction};
 pub use block_lms::BlockLeastMeanSquare;
 pub use block_ls::BlockLeastSquares;
+pub use change::{ChangeConfig, ChangeState};
 pub use confidence::Confidence;
 pub use contact::{Impedance, Observation, Sample};
+pub use contact_model::{ContactModel, MOST_PARAMETERS, contact_plane};
 pub use covariance::Covariance;
+pub use cusum_rls::{CusumRls, CusumRlsConfig, CusumRlsState};
+pub use directional_rls::{DirectionalRls, DirectionalRlsConfig, DirectionalRlsState};
 pub use error::ConfigError;
 pub use estimate::{Assessor, Estimate, Sensors};
 pub use ewrls::{Ewrls, EwrlsConfig};
@@ -101,6 +117,9 @@ pub use gate::{GateConfig, GateState};
 pub use gradient::{Gradient, GradientConfig, GradientState};
 pub use identifier::Identifier;
 pub use law::Law;
+pub use model_stream::{ModelStream, Row};
+pub use parameter_rls::{ParameterRls, ParameterRlsConfig, ParameterState, ParameterStep};
+pub use prior::Prior;
 pub use propagation::Propagation;
 pub use recursive::RecursiveState;
 pub use reset_rls::{ResetRls, ResetRlsConfig, ResetRlsState};

@@ -25,7 +25,11 @@ pub struct RecursiveState {
 impl RecursiveState {
     /// With the estimate at `estimate` and all else at its start.
     pub(crate) fn new(initial_covariance: f32, estimate: Impedance) -> Self {
-        let covariance = Covariance::identity(initial_covariance);
+        Self::believing(Covariance::identity(initial_covariance), estimate)
+    }
+
+    /// With the estimate at `estimate`, believed as far as `covariance` says.
+    pub(crate) fn believing(covariance: Covariance, estimate: Impedance) -> Self {
         Self { estimate, covariance, uncertainty: Propagation::new(estimate) }
     }
 
@@ -38,12 +42,24 @@ impl RecursiveState {
         covariance: Covariance,
         initial_covariance: f32,
     ) -> Flags {
+        self.commit_or(gain, innovation, covariance, Covariance::identity(initial_covariance))
+    }
+
+    /// The same, with the covariance that it starts anew from.
+    #[inline(always)]
+    pub(crate) fn commit_or(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        initial: Covariance,
+    ) -> Flags {
         let estimate = self.estimate.moved(innovation, gain);
         if covariance.is_sound() && estimate.is_finite() {
             (self.estimate, self.covariance) = (estimate, covariance);
             Flags::empty()
         } else {
-            self.covariance = Covariance::identity(initial_covariance);
+            self.covariance = initial;
             Flags::RESET
         }
     }

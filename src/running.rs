@@ -168,7 +168,7 @@ impl<M: Moments> Running<M> {
 /// The least-squares solution of `run`, where it explains most of the misfit about the centre.
 fn better<M: Moments>(run: &Run<M>, config: &BlockConfig) -> Option<Impedance> {
     let sums = run.moments.second();
-    let correction = Solution::of(sums, config).correction;
+    let correction = Solution::of(sums, config, run.centre).correction;
     let explained = correction.stiffness * sums.misfit.stiffness + correction.damping * sums.misfit.damping;
     let centre = run.centre.moved(1.0, correction);
     (explained > MOST * sums.misfit_energy && centre.is_finite()).then_some(centre)

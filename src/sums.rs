@@ -110,7 +110,23 @@ pub struct Solution {
 impl Solution {
     /// Both where the tool moves and the columns are independent, K alone where they are in line or it holds still,
     /// neither where it is not in the surface.
-    pub fn of(sums: &Sums, config: &BlockConfig) -> Self {
+    ///
+    /// A prior of `config` pulls towards zero; `centre` is the estimate that the sums were taken about.
+    pub fn of(sums: &Sums, config: &BlockConfig, centre: Impedance) -> Self {
+        match config.prior {
+            None => Self::plain(sums, config),
+            Some(prior) => {
+                let (ridge, mut sums) = (prior.ridge(), *sums);
+                sums.regressors.xx += ridge.stiffness;
+                sums.regressors.vv += ridge.damping;
+                sums.misfit.stiffness -= ridge.stiffness * centre.stiffness;
+                sums.misfit.damping -= ridge.damping * centre.damping;
+                Self::plain(&sums, config)
+            }
+        }
+    }
+
+    fn plain(sums: &Sums, config: &BlockConfig) -> Self {
         let moving = sums.regressors.vv > sums.samples * (config.rate_floor * config.rate_floor);
         if let Some(inverse) = sums.regressors.invert(config.independence_floor).filter(|_| moving) {
             let correction = inverse.times(sums.misfit);

@@ -80,7 +80,10 @@ fn the_ends_of_the_range() {
             let step = (law.update)(*o);
             assert!(step.estimate.is_finite() && !step.innovation.is_nan(), "{name}: {step:?} on {o:?}");
             let c = step.confidence;
-            assert!(!c.noise.xx.is_nan() && !c.noise_gain.xx.is_nan() && !c.remainder.stiffness.is_nan(), "{name}");
+            assert!(
+                !c.noise.xx.is_nan() && !c.noise_gain.xx.is_nan() && !c.remainder.stiffness.is_nan(),
+                "{name}: {c:?}"
+            );
         }
         let recovered = (0..20_000).map(|k| (law.update)(row(k))).last().expect("a step");
         // What never forgets keeps rows of a million for ever; all others are back.

@@ -5,6 +5,7 @@
 //! last digit moves K by `eps F / x` and B by `eps F / v` (rms), and normal equations magnify that by one over the
 //! independence of the columns.
 
+mod adaptive;
 mod block;
 mod chain;
 mod descent;

@@ -1,10 +1,12 @@
 //! The same estimates in double precision and by other algorithms: nothing here knows how the library computes.
 
+mod adaptive;
 mod descent;
 mod front_end;
 mod least_squares;
 mod sprls;
 
+pub use adaptive::{Cusum, Directional, columns, ridged};
 pub use descent::{line_minimum, newton_direction, steepest_direction, whole_minimum};
 pub use front_end::FrontEnd;
 pub use least_squares::{Prior, gradient_step, independence, least_squares, stiffness_alone, weighted};
