@@ -16,6 +16,7 @@ pub mod recording;
 pub mod recordings;
 pub mod reference;
 pub mod replay;
+pub mod reproduce;
 pub mod rig;
 pub mod sensors;
 pub mod simulate;

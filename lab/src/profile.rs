@@ -18,6 +18,7 @@ use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use serde::Serialize;
 
+pub use budget::{Cost, kept as kept_costs};
 pub use figures::Figures;
 
 use crate::device;

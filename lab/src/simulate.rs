@@ -9,6 +9,8 @@ mod led;
 mod mover;
 mod trial;
 
+pub use trial::{Pilot, Seen};
+
 use std::path::PathBuf;
 
 use anyhow::bail;
@@ -91,5 +93,14 @@ fn refuse_own_input(args: &SimulateArgs) -> Result<(), InputError> {
 /// The rig has neither drive nor contact, lacks what no default fits, holds an effect that cannot be, or is too stiff or
 /// too long to simulate.
 pub fn simulate(rig: &Rig, seed: u64, origin: &str) -> Result<Trial, InputError> {
-    trial::run(&bench::complete(rig, origin)?, seed, origin)
+    trial::run(&bench::complete(rig, origin)?, seed, origin, None)
+}
+
+/// As [`simulate`], with `pilot` at the controls of a rig with a drive: each row's readings are handed to it, and what it commands
+/// is the reference of the drive's controller until the next row.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn steer(rig: &Rig, seed: u64, origin: &str, pilot: &mut dyn Pilot) -> Result<Trial, InputError> {
+    trial::run(&bench::complete(rig, origin)?, seed, origin, Some(pilot))
 }

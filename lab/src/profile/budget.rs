@@ -11,19 +11,29 @@ use super::figures::Figures;
 /// The file, in the folder of the sources.
 pub const FILE: &str = "lab/budget.csv";
 
-/// One update.
+/// What one update costs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Row {
-    update: String,
-    window: Option<u16>,
-    instructions_mean: f64,
-    instructions_worst: u32,
-    stack_bytes: u32,
-    state_bytes: u32,
+pub struct Cost {
+    /// Its name.
+    pub update: String,
+    /// Its window, where it has one.
+    pub window: Option<u16>,
+    /// Instructions on the mean.
+    pub instructions_mean: f64,
+    /// The most of any update.
+    pub instructions_worst: u32,
+    /// Bytes of stack along the deepest call.
+    pub stack_bytes: u32,
+    /// Bytes of state and of the samples in its window.
+    pub state_bytes: u32,
+    /// Modelled cycles of the worst update, at least: told, and not held, for they follow from the instructions.
+    pub worst_cycles_lo: u32,
+    /// The same, at most.
+    pub worst_cycles_hi: u32,
 }
 
-impl Row {
-    fn of(figures: &Figures) -> Self {
+impl Cost {
+    pub(super) fn of(figures: &Figures) -> Self {
         Self {
             update: figures.name.clone(),
             window: figures.window,
@@ -31,6 +41,8 @@ impl Row {
             instructions_worst: figures.instructions_worst,
             stack_bytes: figures.stack_bytes,
             state_bytes: figures.state_bytes,
+            worst_cycles_lo: figures.worst_cycles_lo,
+            worst_cycles_hi: figures.worst_cycles_hi,
         }
     }
 
@@ -42,6 +54,15 @@ impl Row {
             ("bytes of state", f64::from(self.state_bytes)),
         ]
     }
+}
+
+/// What the sources hold of every update.
+///
+/// # Errors
+/// The file is none.
+pub fn kept() -> Result<Vec<Cost>> {
+    let mut reader = csv::Reader::from_reader(include_str!("../../budget.csv").as_bytes());
+    reader.deserialize().collect::<Result<_, _>>().context(FILE)
 }
 
 /// Where the file stands.
@@ -56,7 +77,7 @@ pub fn path(project: &Path) -> PathBuf {
 pub fn text(figures: &[Figures]) -> Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for figures in figures {
-        writer.serialize(Row::of(figures))?;
+        writer.serialize(Cost::of(figures))?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
@@ -71,10 +92,10 @@ const ROOM: f64 = 0.02;
 /// The file is not there or is none.
 pub fn differences(figures: &[Figures], path: &Path) -> Result<String> {
     let mut reader = csv::Reader::from_path(path).with_context(|| format!("{}", path.display()))?;
-    let budget: Vec<Row> =
+    let budget: Vec<Cost> =
         reader.deserialize().collect::<Result<_, _>>().with_context(|| format!("{}", path.display()))?;
     let mut words = String::new();
-    for row in figures.iter().map(Row::of) {
+    for row in figures.iter().map(Cost::of) {
         let allowed = budget.iter().find(|b| b.update == row.update && b.window == row.window);
         let name = row.window.map_or_else(|| row.update.clone(), |window| format!("{} {window}", row.update));
         let Some(allowed) = allowed else {
@@ -87,7 +108,7 @@ pub fn differences(figures: &[Figures], path: &Path) -> Result<String> {
             }
         }
     }
-    let gone = |b: &&Row| !figures.iter().any(|f| f.name == b.update && f.window == b.window);
+    let gone = |b: &&Cost| !figures.iter().any(|f| f.name == b.update && f.window == b.window);
     for row in budget.iter().filter(gone) {
         let _ = writeln!(words, "{} {:?} has a budget and was not measured", row.update, row.window);
     }

@@ -56,6 +56,14 @@ pub struct Figures {
     pub updates_per_s: f64,
 }
 
+impl Figures {
+    /// Those that the sources hold.
+    #[must_use]
+    pub fn cost(&self) -> super::Cost {
+        super::Cost::of(self)
+    }
+}
+
 /// The figures of all cases but the first, which is of nothing and tells what the rest is to be relieved of.
 ///
 /// # Errors

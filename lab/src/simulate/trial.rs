@@ -20,6 +20,25 @@ const LONG: f64 = 1e8;
 /// Share of rows at the effort's limit from which a user should know.
 const OFTEN: f64 = 0.2;
 
+/// One row as a pilot sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen {
+    /// Seconds.
+    pub time: f64,
+    /// Reading of the position sensor.
+    pub position: f64,
+    /// Reading of the force sensor, without the effects of the sensor.
+    pub force: f64,
+    /// The force itself, for the records: no pilot may fly by it.
+    pub true_force: f64,
+}
+
+/// Whoever steers the tool in the place of the rig's reference.
+pub trait Pilot {
+    /// The command from this row to the next: a depth counted from the surface.
+    fn command(&mut self, seen: &Seen) -> f64;
+}
+
 struct Run<'a> {
     setting: &'a Setting,
     surface: f64,
@@ -32,12 +51,17 @@ struct Run<'a> {
     acceleration: Vec<f64>,
     touched: bool,
     limited: usize,
+    /// What the pilot commands, until the next row.
+    command: Option<f64>,
 }
 
-/// Runs a completed rig.
-pub fn run(setting: &Setting, seed: u64, origin: &str) -> Result<Trial, InputError> {
+/// Runs a completed rig, along its reference or as `pilot` steers it.
+pub fn run(setting: &Setting, seed: u64, origin: &str, mut pilot: Option<&mut dyn Pilot>) -> Result<Trial, InputError> {
     let mut mover = mover(setting, origin)?;
     let mut run = Run::new(setting, seed);
+    // The pilot's force sensor has a noise of its own: that of the recording is drawn when the run is over.
+    let mut chance = ChaCha8Rng::seed_from_u64(seed);
+    chance.set_stream(1);
     let rate = setting.simulation.rate_hz;
     // Half a row of slack: 0.3 s at 10 Hz is 2.9999999999999996 rows.
     let rows = (setting.simulation.duration_s * rate + 0.5).floor() as usize;
@@ -50,6 +74,9 @@ pub fn run(setting: &Setting, seed: u64, origin: &str) -> Result<Trial, InputErr
             return Err(unbound(setting, origin, time));
         }
         run.record(&mut mover, time);
+        if let Some(pilot) = pilot.as_deref_mut() {
+            run.steer(pilot, time, &mut chance);
+        }
         if row % 4096 == 0 {
             bar.set_position(row as u64);
         }
@@ -100,6 +127,7 @@ impl<'a> Run<'a> {
             acceleration: Vec::new(),
             touched: false,
             limited: 0,
+            command: None,
         }
     }
 
@@ -108,7 +136,8 @@ impl<'a> Run<'a> {
         match mover {
             Mover::Led(led) => led.advance(row / rate),
             Mover::Driven(driven) => {
-                let aim = |time| self.surface + self.setting.reference.at(time).0;
+                let command = self.command;
+                let aim = |time| self.surface + command.unwrap_or_else(|| self.setting.reference.at(time).0);
                 let read = |position| self.encoder.read(position, &mut self.chance);
                 driven.advance(row, rate, self.setting.control.rate_hz, aim, read);
             }
@@ -116,7 +145,7 @@ impl<'a> Run<'a> {
     }
 
     fn record(&mut self, mover: &mut Mover<'_>, time: f64) {
-        let reference = self.surface + self.setting.reference.at(time).0;
+        let reference = self.surface + self.command.unwrap_or_else(|| self.setting.reference.at(time).0);
         let state = mover.state();
         let recording = &mut self.recording;
         recording.time.push(time);
@@ -134,6 +163,19 @@ impl<'a> Run<'a> {
         if let Some(references) = &mut recording.reference {
             references.push(reference);
         }
+    }
+
+    /// Hands the pilot what the sensors show of the row that was just recorded.
+    fn steer(&mut self, pilot: &mut dyn Pilot, time: f64, chance: &mut ChaCha8Rng) {
+        let last = |column: &[f64]| column.last().copied().unwrap_or_default();
+        let truth = self.recording.force.as_deref().map_or(0.0, last);
+        let seen = Seen {
+            time,
+            position: last(&self.recording.position),
+            force: self.load_cell.read(truth, chance),
+            true_force: truth,
+        };
+        self.command = Some(pilot.command(&seen));
     }
 
     /// From the true force to what the sensor shows: effects, then noise, then steps.

@@ -4,8 +4,10 @@ use core::hint::black_box;
 use core::mem::{MaybeUninit, size_of};
 
 use palpate::{
-    BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares, ConfigError, Direction, Ewrls,
-    Gradient, Identifier, Law, Observation, Recent, ResetRls, Sample, Sprls, Step, Stream, Tracker, direct,
+    AdaptiveWindow, AdaptiveWindowConfig, BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares,
+    ChangeConfig, ConfigError, ContactModel, CusumRls, CusumRlsConfig, Direction, DirectionalRls, DirectionalRlsConfig,
+    Ewrls, Gradient, Identifier, Law, ModelStream, Observation, ParameterRls, ParameterRlsConfig, Prior, Recent,
+    ResetRls, Sample, Sprls, Step, Stream, Tracker, direct,
 };
 
 use super::gauge::{Gauge, Work};
@@ -72,17 +74,23 @@ pub fn run(recording: &Recording, mut gauge: Gauge) -> Result<(), Fault> {
     laws.law("sprls", 0, Sprls::new(config.sprls))?;
     laws.law("reset_rls", 0, ResetRls::new(config.reset_rls))?;
     laws.law("gradient", 0, Gradient::new(config.gradient))?;
+    laws.law("cusum_rls", 0, CusumRls::new(CusumRlsConfig::default()))?;
+    laws.law("directional_rls", 0, DirectionalRls::new(DirectionalRlsConfig::default()))?;
     for window in [10, 50, 300] {
         let block = BlockConfig::of(window);
         laws.law("bls", window, BlockLeastSquares::new(block))?;
         laws.law("blms", window, BlockLeastMeanSquare::new(block))?;
         laws.law("blmf", window, BlockLeastMeanFourth::new(block, Direction::SteepestDescent))?;
         laws.law("newton_blmf", window, BlockLeastMeanFourth::new(block, Direction::Newton))?;
+        laws.law("adaptive_bls", window, AdaptiveWindow::new(AdaptiveWindowConfig::of(window)))?;
+        let ridge = BlockConfig { minimum_fill: 2, prior: Some(Prior::default()), ..block };
+        laws.law("ridge_bls", window, BlockLeastSquares::new(ridge))?;
         laws.law("bls_anew", window, direct::BlockLeastSquares::new(block))?;
         laws.law("blmf_anew", window, direct::BlockLeastMeanFourth::new(block, Direction::SteepestDescent))?;
     }
     laws.estimate_alone()?;
-    samples_to_estimates(recording, &mut gauge)
+    samples_to_estimates(recording, &mut gauge)?;
+    three_parameters(recording, &mut gauge)
 }
 
 struct Laws<'a> {
@@ -136,6 +144,10 @@ impl Laws<'_> {
         let sprls = Sprls::new(config.sprls).map_err(unsound)?;
         self.learn("sprls_alone", 0, &sprls, |state, recent| {
             sprls.learn(state, &recent.newest().unwrap_or_default());
+        })?;
+        let cusum = CusumRls::new(CusumRlsConfig::default()).map_err(unsound)?;
+        self.learn("cusum_rls_alone", 0, &cusum, |state, recent| {
+            cusum.learn(state, &recent.newest().unwrap_or_default());
         })?;
         let block = BlockConfig::of(300);
         let bls = BlockLeastSquares::new(block).map_err(unsound)?;
@@ -199,6 +211,41 @@ fn samples_to_estimates(recording: &Recording, gauge: &mut Gauge) -> Result<(), 
             black_box(bls.follow(stream, &event));
             black_box(blmf.follow(stream, &event));
         }
+    })
+}
+
+/// The whole way with a law of three parameters, and with one that takes a power of the depth.
+fn three_parameters(recording: &Recording, gauge: &mut Gauge) -> Result<(), Fault> {
+    let front_end = recording.config.stream.front_end;
+    for (name, model) in [
+        ("model_bias", ContactModel::BiasedKelvinVoigt),
+        ("model_tool_mass", ContactModel::ToolMass),
+        ("model_hunt_crossley", ContactModel::HuntCrossley { exponent: 1.5 }),
+    ] {
+        let mut stream = ModelStream::new(front_end, model).map_err(unsound)?;
+        let config = ParameterRlsConfig {
+            forgetting_factor: 0.998,
+            noise: 0.1,
+            spreads: [1e3, 1e3, 10.0],
+            change: Some(ChangeConfig::default()),
+            correlated_samples: stream.correlated_samples(),
+        };
+        let law = ParameterRls::new(config).map_err(unsound)?;
+        let mut state = law.start();
+        let bytes = size_of::<ModelStream>() + size_of_val(&state);
+        whole(recording, gauge, name, 0, bytes, |sample| {
+            if let Ok(row) = stream.update(sample) {
+                if row.contact && !row.restarted {
+                    black_box(law.update(&mut state, row.first(), row.force));
+                    black_box(law.half_widths(&state));
+                }
+            }
+        })?;
+    }
+    let cusum = CusumRls::new(CusumRlsConfig::default()).map_err(unsound)?;
+    let mut cusum = Identifier::<_, 1>::new(recording.config.stream, cusum).map_err(unsound)?;
+    whole(recording, gauge, "identify_cusum_rls", 0, size_of_val(&cusum), |sample| {
+        black_box(cusum.update(sample).is_ok());
     })
 }
 
