@@ -10,6 +10,7 @@ use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
 use crate::profile::{self, ProfileArgs};
 use crate::replay::{self, ReplayArgs};
+use crate::reproduce::{self, ReproduceArgs};
 use crate::simulate::{self, SimulateArgs};
 
 /// Stiffness and damping of what a tool touches: identified from recordings, on the host or on the drive's processor.
@@ -28,6 +29,8 @@ enum Command {
     Replay(ReplayArgs),
     /// Make a recording from a rig file
     Simulate(SimulateArgs),
+    /// Reproduce the paper's study, and show what does better
+    Reproduce(ReproduceArgs),
     /// Count what each estimator costs on the device
     Profile(ProfileArgs),
     /// Put the diagnosis to recordings whose missing physics is concealed from it
@@ -43,6 +46,7 @@ pub fn run() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
+        Command::Reproduce(args) => reproduce::run(&args),
         Command::Profile(args) => profile::run(&args),
         Command::Challenge(args) => challenge::run(&args),
         Command::Effects(args) => catalogue::run(&args),

@@ -26,7 +26,7 @@ const TRANSIENT: usize = 100;
 pub struct Row {
     /// Which.
     pub estimator: Estimator,
-    /// Behind a matched filter of 30 Hz, or the paper's velocity.
+    /// Behind a matched filter of 40 Hz, or the paper's velocity.
     pub matched: bool,
     /// Milliseconds from the touch until K stays within 10 %.
     pub onset: Spread,

@@ -43,7 +43,9 @@ pub enum Estimator {
     Directional,
 }
 
-/// The paper's settings.
+/// Cut-off of the matched filter, Hz.
+pub const MATCHED_CUTOFF: f32 = 40.0;
+/// The paper's P(0).
 pub const PAPER_COVARIANCE: f32 = 10.0;
 /// The paper's gamma.
 pub const PAPER_GAMMA: f32 = 2.0;
@@ -170,7 +172,10 @@ pub fn as_the_paper(period: f32) -> StreamConfig {
     StreamConfig { front_end, ..StreamConfig::BENCH }
 }
 
-/// The matched filter at 30 Hz and 1 kHz.
+/// The matched filter at 40 Hz and 1 kHz.
 pub fn matched() -> StreamConfig {
-    StreamConfig { front_end: FrontEndConfig { cutoff: 30.0, ..FrontEndConfig::BENCH }, ..StreamConfig::BENCH }
+    StreamConfig {
+        front_end: FrontEndConfig { cutoff: MATCHED_CUTOFF, ..FrontEndConfig::BENCH },
+        ..StreamConfig::BENCH
+    }
 }

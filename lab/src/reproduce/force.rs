@@ -25,7 +25,7 @@ pub const SEEDS: u64 = 5;
 /// The force that is asked for, N.
 pub const WANTED: f64 = 3.0;
 /// w, 1/s.
-const BANDWIDTH: f64 = 12.0;
+const BANDWIDTH: f64 = 2.0;
 /// Bounds that no estimate leaves, N/m.
 const BOUNDS: (f64, f64) = (100.0, 3000.0);
 /// K before anything is known: stiff, so that the loop is slow.
@@ -102,7 +102,7 @@ pub struct Row {
     pub peak_down: Spread,
     /// Root mean square of the departure from the first jump to the end, %.
     pub rms: Spread,
-    /// Runs whose force swings more in the last second before the second jump than in the one before it, and by more than the band.
+    /// Runs whose force still departs by more than twice the band in the last second before the second jump: they swing.
     pub unstable: usize,
     /// The first run.
     pub flight: Flight,
@@ -225,11 +225,7 @@ fn row(source: Source, mut flights: Vec<Flight>) -> Row {
     let swing =
         |flight: &Flight, rows: std::ops::Range<usize>| departures(flight, rows).into_iter().fold(0.0, f64::max);
     let end = 15_800;
-    let unstable = flights.iter().filter(|flight| {
-        let (before, last) = (swing(flight, down - 2000..down - 1000), swing(flight, down - 1000..down));
-        last > BAND && last > 0.8 * before
-    });
-    let unstable = unstable.count();
+    let unstable = flights.iter().filter(|flight| swing(flight, down - 1000..down) > 2.0 * BAND).count();
     let rms = over(&|flight| {
         let all = departures(flight, up..end);
         100.0 * (all.iter().map(|d| d * d).sum::<f64>() / all.len() as f64).sqrt()

@@ -9,6 +9,8 @@ pub struct Spread {
     pub mean: f64,
     /// Standard deviation; zero of a single value.
     pub deviation: f64,
+    /// The greatest.
+    pub greatest: f64,
 }
 
 impl Spread {
@@ -18,7 +20,8 @@ impl Spread {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-        Self { mean, deviation: if count > 1.0 { (square / (count - 1.0)).sqrt() } else { 0.0 } }
+        let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Self { greatest, mean, deviation: if count > 1.0 { (square / (count - 1.0)).sqrt() } else { 0.0 } }
     }
 }
 

@@ -1,9 +1,7 @@
 //! Beyond K and B: contacts that no spring and damper is, by the regressors of two and three parameters.
 
 use anyhow::{Result, anyhow};
-use palpate::{
-    ChangeConfig, ContactModel, FrontEndConfig, ModelStream, ParameterRls, ParameterRlsConfig, contact_plane,
-};
+use palpate::{ChangeConfig, ContactModel, ModelStream, ParameterRls, ParameterRlsConfig, contact_plane};
 use rayon::prelude::*;
 
 use super::bench::{Contact, Trial};
@@ -193,7 +191,7 @@ struct Found {
 }
 
 fn identify<const P: usize>(model: ContactModel, spreads: [f32; P], trials: &[Trial]) -> Result<Vec<Found>> {
-    let front_end = FrontEndConfig { cutoff: 30.0, ..FrontEndConfig::BENCH };
+    let front_end = super::estimator::matched().front_end;
     let identified = trials.iter().map(|trial| {
         let mut stream = ModelStream::new(front_end, model).map_err(|error| anyhow!("{error}"))?;
         let config = ParameterRlsConfig {

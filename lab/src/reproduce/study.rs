@@ -62,9 +62,9 @@ pub struct Cell {
     pub rmse: Spread,
     /// The same without its first 0.3 s.
     pub rmse_later: Spread,
-    /// Standard deviation of K, N/m, from 3 s after the touch on.
+    /// Standard deviation of K, N/m, from 1 s after the touch on.
     pub deviation: Spread,
-    /// Seconds from the touch until K stays within 10 % of its median over the next second but two.
+    /// Seconds from the touch until K stays, for the first 2 s, within 10 % of its median over the third.
     pub converged: Spread,
 }
 
@@ -119,7 +119,7 @@ fn cell(reading: Reading, estimator: Estimator, trials: &[Trial]) -> Result<Cell
         let samples = trial.samples(reading.every);
         let estimates = estimator.run(config, &samples)?;
         let touched = &estimates[contact(&estimates)];
-        let later = &touched[rows(3.0).min(touched.len())..touched.len().saturating_sub(rows(0.5))];
+        let later = &touched[rows(1.0).min(touched.len())..touched.len().saturating_sub(rows(0.5))];
         let values = [
             rmse_percent(&estimates, &samples, 0),
             rmse_percent(&estimates, &samples, rows(0.3)),

@@ -1,0 +1,326 @@
+//! The figures: what is plotted, what to see, and the curves.
+
+use anyhow::Result;
+use palpate::Estimate;
+
+use super::bench::{Contact, Trial};
+use super::better;
+use super::estimator::{Estimator, as_the_paper};
+use super::force::{self, Source, WANTED};
+use super::measure::{damping, stiffness};
+use super::plot::{Curve, Plot};
+use super::rates::Rate;
+use super::study::{Reading, Trials};
+
+/// A figure.
+#[derive(Debug, Clone)]
+pub struct Figure {
+    /// Number, and name of its file: "2".
+    pub number: usize,
+    /// Title.
+    pub title: &'static str,
+    /// What is plotted and what to see in it.
+    pub words: String,
+    /// The picture.
+    pub plot: Plot,
+}
+
+/// Seconds by which a picture begins before the touch.
+const BEFORE: f64 = 0.3;
+
+/// Traces of the paper's four on one trial of a contact.
+struct Traces<'a> {
+    contact: Contact,
+    trial: &'a Trial,
+    time: Vec<f64>,
+    begin: f64,
+    runs: Vec<(String, Vec<Estimate>)>,
+}
+
+impl<'a> Traces<'a> {
+    fn of(reading: &Reading, contact: Contact, trials: &'a Trials, estimators: &[(String, Estimator)]) -> Result<Self> {
+        let at = Contact::PAPER.iter().position(|one| *one == contact).unwrap_or_default();
+        let trial = &trials[at][0];
+        let samples = trial.samples(reading.every);
+        let config = as_the_paper(1e-3 * reading.every as f32);
+        let time: Vec<f64> = trial.time.iter().copied().step_by(reading.every).collect();
+        let runs = estimators.iter().map(|(name, e)| Ok((name.clone(), e.run(config, &samples)?)));
+        let runs: Vec<_> = runs.collect::<Result<_>>()?;
+        let begin = runs.first().map_or(0, |(_, estimates)| super::measure::contact(estimates).start);
+        let begin = time.get(begin).copied().unwrap_or_default();
+        Ok(Self { contact, trial, time, begin, runs })
+    }
+
+    fn curves(&self, value: fn(&[Estimate]) -> Vec<f64>) -> Vec<Curve> {
+        let curve = |(at, (name, estimates)): (usize, &(String, Vec<Estimate>))| Curve {
+            name: name.clone(),
+            colour: at,
+            dashed: false,
+            points: self.time.iter().map(|t| t - self.begin).zip(value(estimates)).collect(),
+        };
+        self.runs.iter().enumerate().map(curve).collect()
+    }
+
+    fn plot(&self, up: &'static str, y: (f64, f64), until: f64, value: fn(&[Estimate]) -> Vec<f64>) -> Plot {
+        plot("seconds since the touch", up, (-BEFORE, until), y, self.curves(value))
+    }
+}
+
+fn all_stiffness(estimates: &[Estimate]) -> Vec<f64> {
+    stiffness(estimates).collect()
+}
+
+fn all_damping(estimates: &[Estimate]) -> Vec<f64> {
+    damping(estimates).collect()
+}
+
+fn plot(across: &'static str, up: &'static str, x: (f64, f64), y: (f64, f64), curves: Vec<Curve>) -> Plot {
+    Plot { across, up, x, y, logarithmic: (false, false), curves, marks: Vec::new(), dots: false }
+}
+
+fn curve(name: &str, colour: usize, points: impl IntoIterator<Item = (f64, f64)>) -> Curve {
+    Curve { name: name.into(), colour, dashed: false, points: points.into_iter().collect() }
+}
+
+const NEWTON_PER_METRE: &str = "stiffness K, N/m";
+const NEWTON_SECOND: &str = "damping B, N s/m";
+
+/// Figures 2 to 12.
+///
+/// # Errors
+/// None for the settings of a reading.
+pub fn of_paper(reading: &Reading, trials: &Trials, rates: &[Rate]) -> Result<Vec<Figure>> {
+    let four: Vec<(String, Estimator)> = reading.estimators(300).into_iter().map(|e| (e.name(), e)).collect();
+    let windows = [50, 100, 300].map(|w| (format!("window of {w}"), Estimator::Bls(w)));
+    let soft = Traces::of(reading, Contact::Soft, trials, &four)?;
+    let varying = Traces::of(reading, Contact::Varying, trials, &four)?;
+    let medium = Traces::of(reading, Contact::Medium, trials, &four)?;
+    let lengths = Traces::of(reading, Contact::Soft, trials, &windows)?;
+    let figure = |number, title, words: &str, plot| Figure { number, title, words: words.into(), plot };
+    Ok(vec![
+        figure(
+            2,
+            "The motion: what was commanded and what the tool did",
+            "The command (dashed) is a square pulse, smoothed, with a sine of 10 Hz on top (eq. 15); the tool follows it through the air and, from the touch on, falls short of it, for the foam pushes back. Depth counts from the surface; below zero the tool is in the air.",
+            motion(&soft),
+        ),
+        figure(
+            3,
+            "The force that the sensor showed, and what BLS expected",
+            "The force follows the sine. BLS expects each sample from those before it: where the two part, its K and B did not foresee the force. That gap, as a share of the force, is the RMSE of tables I and II.",
+            expected(&soft),
+        ),
+        figure(
+            4,
+            "Soft contact: stiffness by the four methods",
+            "Each method's K from the touch on. BLS and BLMF arrive at once; EWRLS climbs for a second, for its P(0) believes in K = 0. The slow fall of all of them is the foam, which relaxes.",
+            soft.plot(NEWTON_PER_METRE, (0.0, 500.0), 10.0, all_stiffness),
+        ),
+        figure(
+            5,
+            "Soft contact: damping by the four methods",
+            "Each method's B. The bench holds 5 N s/m, and all of them settle elsewhere: the paper low-passes the velocity alone, which delays it against the force. Figure 13 shows the same without that.",
+            soft.plot(NEWTON_SECOND, (-5.0, 15.0), 10.0, all_damping),
+        ),
+        figure(
+            6,
+            "Soft contact: the first second",
+            "The beginning of figure 4. The dashed band of interest is 0.3 s, within which the paper has BLS and BLMF converge.",
+            with_mark(soft.plot(NEWTON_PER_METRE, (0.0, 500.0), 1.2, all_stiffness), 0.3, "0.3 s"),
+        ),
+        figure(
+            7,
+            "Soft contact: what a longer window buys",
+            "K by BLS with windows of 50, 100 and 300 samples. The short one follows every swing of the foam's own stiffness, the long one is quiet and later.",
+            lengths.plot(NEWTON_PER_METRE, (0.0, 500.0), 5.0, all_stiffness),
+        ),
+        figure(
+            8,
+            "Time-varying contact: stiffness by the four methods",
+            "Bubble wrap that gives way: K falls from 450 towards 225 N/m. What lags behind is the memory: the true K is dashed.",
+            with_truth(varying.plot(NEWTON_PER_METRE, (0.0, 700.0), 12.0, all_stiffness), wrap(&varying)),
+        ),
+        figure(
+            9,
+            "Time-varying contact: damping by the four methods",
+            "Each method's B on the bubble wrap, which holds 1.5 N s/m.",
+            varying.plot(NEWTON_SECOND, (-5.0, 15.0), 12.0, all_damping),
+        ),
+        figure(
+            10,
+            "Medium contact: stiffness by the four methods",
+            "A pad of 3000 N/m (dashed), which the tool hardly enters. EWRLS takes seconds, for a depth of 3 mm says little against its P(0).",
+            with_truth(medium.plot(NEWTON_PER_METRE, (0.0, 4000.0), 6.0, all_stiffness), level(3000.0)),
+        ),
+        figure(
+            11,
+            "Medium contact: damping by the four methods",
+            "Each method's B on the pad, which holds 5 N s/m (dashed).",
+            with_truth(medium.plot(NEWTON_SECOND, (-10.0, 30.0), 6.0, all_damping), level(5.0)),
+        ),
+        figure(
+            12,
+            "How many updates a second each method does",
+            "The device (dots, joined) at its worst update, against the paper's MATLAB on a PC with nineteen times the clock (the same colour, dashed). On the device the window costs nothing; the dashed line at 1 kHz is what a control loop asks for.",
+            rates_plot(rates),
+        ),
+    ])
+}
+
+fn motion(soft: &Traces<'_>) -> Plot {
+    let millimetres = |column: &[f64]| -> Vec<(f64, f64)> {
+        soft.trial.time.iter().map(|t| t - soft.begin).zip(column.iter().map(|x| 1e3 * x)).collect()
+    };
+    let command = Curve { dashed: true, ..curve("commanded", 8, millimetres(&soft.trial.reference)) };
+    let tool = curve("measured", 0, millimetres(&soft.trial.position));
+    plot("seconds since the touch", "depth, mm", (-1.0, 1.5), (-20.0, 20.0), vec![command, tool])
+}
+
+fn expected(soft: &Traces<'_>) -> Plot {
+    let measured = soft.trial.time.iter().zip(&soft.trial.force).map(|(t, f)| (t - soft.begin, *f));
+    let bls = soft.runs.iter().find(|(name, _)| name == "BLS").map(|(_, estimates)| estimates.as_slice());
+    let every = (soft.trial.time.len() / soft.time.len().max(1)).max(1);
+    let forces = soft.trial.force.iter().step_by(every);
+    let predicted = bls
+        .unwrap_or_default()
+        .iter()
+        .zip(forces)
+        .zip(&soft.time)
+        .map(|((e, f), t)| (t - soft.begin, f - f64::from(e.innovation)));
+    plot(
+        "seconds since the touch",
+        "force, N",
+        (-0.1, 1.0),
+        (-1.0, 6.0),
+        vec![curve("measured", 8, measured), curve("expected by BLS", 2, predicted)],
+    )
+}
+
+fn with_mark(mut plot: Plot, at: f64, word: &'static str) -> Plot {
+    plot.marks.push((at, word));
+    plot
+}
+
+fn with_truth(mut plot: Plot, points: Vec<(f64, f64)>) -> Plot {
+    plot.curves.insert(0, Curve { name: "truth".into(), colour: 6, dashed: true, points });
+    plot
+}
+
+fn level(value: f64) -> Vec<(f64, f64)> {
+    vec![(0.0, value), (100.0, value)]
+}
+
+/// K of the rig file of the bubble wrap.
+fn wrap(varying: &Traces<'_>) -> Vec<(f64, f64)> {
+    debug_assert_eq!(varying.contact, Contact::Varying);
+    let course = |t: f64| 589.0 * (1.0 - 0.618 * (1.0 - (-(t + varying.begin) / 2.5).exp()));
+    (0..140).map(|k| f64::from(k) * 0.1).map(|t| (t, course(t))).collect()
+}
+
+fn rates_plot(rates: &[Rate]) -> Plot {
+    let mut curves = Vec::new();
+    for (colour, method) in super::paper::METHODS.iter().enumerate() {
+        let own = || rates.iter().filter(|rate| rate.method == *method);
+        let spread = |value: &dyn Fn(&Rate) -> Option<f64>| -> Vec<(f64, f64)> {
+            let each = own().filter_map(|rate| Some((rate.window, value(rate)?)));
+            // What has no window costs the same at any.
+            each.flat_map(|(window, y)| match window {
+                Some(window) => vec![(f64::from(window), y)],
+                None => vec![(10.0, y), (300.0, y)],
+            })
+            .collect()
+        };
+        curves.push(curve(&format!("{method} on the device"), colour, spread(&|rate| Some(rate.per_second[0]))));
+        let paper = spread(&|rate| rate.paper);
+        if !paper.is_empty() {
+            let name = format!("{method}, paper's PC");
+            curves.push(Curve { name, colour, dashed: true, points: paper });
+        }
+    }
+    curves.push(Curve { name: "1 kHz".into(), colour: 8, dashed: true, points: vec![(10.0, 1e3), (300.0, 1e3)] });
+    let mut plot = plot("window, samples", "updates per second", (8.0, 400.0), (100.0, 1e6), curves);
+    (plot.logarithmic, plot.dots) = ((true, true), true);
+    plot
+}
+
+/// Figures 13 and on: what does better.
+///
+/// # Errors
+/// None for these settings.
+pub fn of_better(steps: &Trial, flights: &[force::Row]) -> Result<Vec<Figure>> {
+    let shown = [
+        ("EWRLS", Estimator::Ewrls { window: 300, covariance: 10.0 }, false),
+        ("BLS 300", Estimator::Bls(300), false),
+        ("matched, BLS 300", Estimator::Bls(300), true),
+        ("matched, shrinking window", Estimator::Adaptive, true),
+        ("matched, CUSUM-reset RLS", Estimator::Cusum, true),
+    ];
+    let samples = steps.samples(1);
+    let mut runs = Vec::new();
+    for (at, (name, estimator, is_matched)) in shown.into_iter().enumerate() {
+        runs.push((name, at, estimator.run(better::front_end(is_matched), &samples)?));
+    }
+    let begin = runs.last().map_or(0, |(.., estimates)| super::measure::contact(estimates).start);
+    let [up, _] = better::JUMPS;
+    let around = |row: usize, value: fn(&[Estimate]) -> Vec<f64>| -> Vec<Curve> {
+        let curve = |(name, at, estimates): &(&str, usize, Vec<Estimate>)| {
+            let points = value(estimates).into_iter().enumerate().map(|(k, y)| (k as f64 - row as f64, y));
+            curve(name, *at, points)
+        };
+        runs.iter().map(curve).collect()
+    };
+    let jump = vec![(-100.0, 250.0), (0.0, 250.0), (0.0, 900.0), (900.0, 900.0)];
+    let damped =
+        plot("milliseconds since the jump", NEWTON_SECOND, (-500.0, 3000.0), (0.0, 10.0), around(up, all_damping));
+    let onset = plot(
+        "milliseconds since the touch",
+        NEWTON_PER_METRE,
+        (-20.0, 400.0),
+        (0.0, 500.0),
+        around(begin, all_stiffness),
+    );
+    let stepped =
+        plot("milliseconds since the jump", NEWTON_PER_METRE, (-50.0, 450.0), (0.0, 1100.0), around(up, all_stiffness));
+    let figure = |number, title, words: &str, plot| Figure { number, title, words: words.into(), plot };
+    Ok(vec![
+        figure(
+            13,
+            "Damping, without the delay",
+            "B around a jump of K at 0. The truth is 5 N s/m (dashed). What passes the paper's velocity filter settles a quarter below it; what passes the matched filter settles on it.",
+            with_truth(damped, vec![(-500.0, 5.0), (3000.0, 5.0)]),
+        ),
+        figure(
+            14,
+            "The touch: who knows K first",
+            "K in the first 0.4 s of a contact of 250 N/m (dashed). With the matched filter a handful of samples is enough.",
+            with_truth(onset, vec![(0.0, 250.0), (400.0, 250.0)]),
+        ),
+        figure(
+            15,
+            "A jump of K from 250 to 900 N/m: who follows",
+            "K around the jump (truth dashed). A window of 300 needs 300 samples; a window that shrinks, and a recursion that begins again, need as long as it takes to be sure that something has changed.",
+            with_truth(stepped, jump),
+        ),
+        figure(
+            16,
+            "Force under control when K jumps",
+            "An adaptive controller holds 3 N by each estimator's K; K jumps from 250 to 900 N/m at 0. The force is the mean over one period of the dither. The sooner K is known, the sooner the force is back.",
+            flights_plot(flights),
+        ),
+    ])
+}
+
+fn flights_plot(flights: &[force::Row]) -> Plot {
+    let [up, _] = better::JUMPS;
+    let shown = |row: &&force::Row| {
+        !matches!(row.source, Source::Estimated(Estimator::Sprls { .. } | Estimator::Blmf(_) | Estimator::Adaptive, _))
+    };
+    let curve = |(at, row): (usize, &force::Row)| {
+        let points = row.flight.time.iter().zip(&row.flight.force).map(|(t, f)| (1e3 * t - up as f64, *f));
+        curve(&row.source.name(), [8, 0, 1, 4, 6][at.min(4)], points)
+    };
+    let mut curves: Vec<Curve> = flights.iter().filter(shown).enumerate().map(curve).collect();
+    let wanted = vec![(-300.0, WANTED), (2000.0, WANTED)];
+    curves.insert(0, Curve { name: "wanted".into(), colour: 7, dashed: true, points: wanted });
+    plot("milliseconds since the jump", "force, N", (-300.0, 2000.0), (1.5, 6.5), curves)
+}

@@ -1,0 +1,43 @@
+//! The force under control.
+
+use maud::{Markup, html};
+
+use super::super::Results;
+use super::super::force::{Row, SEEDS, Source, WANTED};
+use super::{grid, spread, wide};
+use crate::reproduce::estimator::Estimator;
+
+pub(super) fn section(results: &Results) -> Markup {
+    let table = html! {
+        table.better {
+            caption { "Mean ± spread of " (SEEDS) " flights. Peak: largest departure; rms: from the first jump to the end; both in % of the wanted " (WANTED) " N" }
+            thead { tr { th scope="col" { "K from" } th scope="col" { "back within 5 %, jump up, ms" } th scope="col" { "jump down, ms" } th scope="col" { "peak up, %" } th scope="col" { "peak down, %" } th scope="col" { "rms, %" } th scope="col" { "flights that swing" } } }
+            tbody { @for row in &results.force { (line(row)) } }
+        }
+    };
+    html! {
+        section #force aria-labelledby="force-title" {
+            h2 #force-title { "Why a fast estimate matters" }
+            p {
+                "An indirect adaptive controller holds a force. The drive keeps its controller of the position; above it, the commanded depth is what the wanted force needs by the estimated K, and a slow integral mends the rest. "
+                "K jumps from 250 to 900 N/m, and back 5 s later. With the true K the force would be back as soon as the tool has moved; without any estimate only the integral is left. A late estimate is worse than none: it moves the tool when the integral has long mended the force."
+            }
+            (wide("Force control by each estimate", &table))
+            (grid(&results.force_figures))
+        }
+    }
+}
+
+fn line(row: &Row) -> Markup {
+    html! {
+        tr.best[matches!(row.source, Source::Estimated(Estimator::Cusum, _))] {
+            th scope="row" { (row.source.name()) }
+            td { (spread(&row.settled_up, 0)) }
+            td { (spread(&row.settled_down, 0)) }
+            td { (spread(&row.peak_up, 0)) }
+            td { (spread(&row.peak_down, 0)) }
+            td { (spread(&row.rms, 1)) }
+            td { (row.unstable) " of " (SEEDS) }
+        }
+    }
+}
