@@ -1,6 +1,7 @@
 //! The whole way from sensor readings to an estimate, for one law.
 
 use crate::contact::Sample;
+use crate::cusum_rls::{CusumRls, CusumRlsConfig};
 use crate::error::{ConfigError, require};
 use crate::estimate::Estimate;
 use crate::front_end::Rejection;
@@ -10,10 +11,29 @@ use crate::stream::{Stream, StreamConfig, Tracker};
 /// Front end, ring of `N` observations, one law.
 ///
 /// `N` is the law's window, or 1 for a recursive law; a longer ring costs memory only.
+///
+/// The default law is [`CusumRls`]: of all that are here it alone is quick at a touch and at a jump of K, quiet in between, free of
+/// bias behind the matched filter, and needs no window. [`Identifier::recommended`] has it with its settings. The measurements are
+/// in `docs/paper.md`; `palpate reproduce` makes them again. Others for other jobs:
+///
+/// - [`crate::AdaptiveWindow`] or [`crate::BlockLeastSquares`] where the estimate has to rest on a stretch of time that can be named;
+/// - [`crate::Ewrls`] with a factor near 1 where nothing ever changes;
+/// - [`crate::BlockLeastMeanFourth`] along Newton's direction where the noise is bounded and never spikes;
+/// - [`crate::DirectionalRls`] for a tool that is often held still.
 #[derive(Debug, Clone)]
-pub struct Identifier<L: Law, const N: usize> {
+pub struct Identifier<L: Law = CusumRls, const N: usize = 1> {
     stream: Stream<N>,
     tracker: Tracker<L>,
+}
+
+impl Identifier {
+    /// The law to take where no other is asked for: [`CusumRls`] with its default settings.
+    ///
+    /// # Errors
+    /// The first field of `config` that is out of range.
+    pub fn recommended(config: StreamConfig) -> Result<Self, ConfigError> {
+        Self::new(config, CusumRls::new(CusumRlsConfig::default())?)
+    }
 }
 
 impl<L: Law, const N: usize> Identifier<L, N> {

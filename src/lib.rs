@@ -4,10 +4,9 @@
 //! bit for bit the same on a host.
 //!
 //! ```
-//! use palpate::{BlockConfig, BlockLeastSquares, Identifier, Sample, StreamConfig};
+//! use palpate::{Identifier, Sample, StreamConfig};
 //!
-//! let law = BlockLeastSquares::new(BlockConfig::default())?;
-//! let mut identifier = Identifier::<_, 300>::new(StreamConfig::BENCH, law)?;
+//! let mut identifier = Identifier::recommended(StreamConfig::BENCH)?;
 //! # let mut last = None;
 //! for k in 0..400 {
 //!     // In the interrupt: read the sensors (SI, penetration positive into the surface), then

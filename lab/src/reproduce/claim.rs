@@ -75,8 +75,8 @@ fn named(values: &[(usize, f64)], unit: &str, decimals: usize) -> String {
 }
 
 fn of_contact(contact: usize, methods: &[usize]) -> String {
-    let values: Vec<_> = methods.iter().map(|method| (*method, RMSE_BY_CONTACT[*method][contact])).collect();
-    named(&values, " %", 2)
+    let words = methods.iter().map(|method| format!("{} {}", METHODS[*method], RMSE_BY_CONTACT[*method][contact]));
+    format!("{} %", words.collect::<Vec<_>>().join(", "))
 }
 
 fn of_window(table: &[Option<[f64; 2]>; 4], methods: &[usize], unit: &str) -> String {

@@ -113,55 +113,61 @@ pub fn of_paper(reading: &Reading, trials: &Trials, rates: &[Rate]) -> Result<Ve
         figure(
             4,
             "Soft contact: stiffness by the four methods",
-            "Each method's K from the touch on. BLS and BLMF arrive at once; EWRLS climbs for a second, for its P(0) believes in K = 0. The slow fall of all of them is the foam, which relaxes.",
+            "Each method's K from the touch on. Look how soon each arrives, and how quiet it stays. EWRLS begins from a P(0) that believes in K = 0; the slow fall is the foam, which relaxes.",
             soft.plot(NEWTON_PER_METRE, (0.0, 500.0), 10.0, all_stiffness),
         ),
         figure(
             5,
             "Soft contact: damping by the four methods",
-            "Each method's B. The bench holds 5 N s/m, and all of them settle elsewhere: the paper low-passes the velocity alone, which delays it against the force. Figure 13 shows the same without that.",
+            &format!(
+                "Each method's B; the bench holds {} N s/m. The paper low-passes the velocity alone, which delays it against the force: figure 13 shows what that does to B where nothing else disturbs it.",
+                truth(Contact::Soft)[1]
+            ),
             soft.plot(NEWTON_SECOND, (-5.0, 15.0), 10.0, all_damping),
         ),
         figure(
             6,
             "Soft contact: the first second",
-            "The beginning of figure 4. The dashed band of interest is 0.3 s, within which the paper has BLS and BLMF converge.",
+            "The beginning of figure 4. The dotted line is at 0.3 s, within which the paper has BLS and BLMF converge.",
             with_mark(soft.plot(NEWTON_PER_METRE, (0.0, 500.0), 1.2, all_stiffness), 0.3, "0.3 s"),
         ),
         figure(
             7,
             "Soft contact: what a longer window buys",
-            "K by BLS with windows of 50, 100 and 300 samples. The short one follows every swing of the foam's own stiffness, the long one is quiet and later.",
+            "K by BLS with windows of 50, 100 and 300 samples. A window shorter than the 10 Hz of the motion follows every swing of the foam's own stiffness; a longer one is quieter and later.",
             lengths.plot(NEWTON_PER_METRE, (0.0, 500.0), 5.0, all_stiffness),
         ),
         figure(
             8,
             "Time-varying contact: stiffness by the four methods",
-            "Bubble wrap that gives way: K falls from 450 towards 225 N/m. What lags behind is the memory: the true K is dashed.",
-            with_truth(varying.plot(NEWTON_PER_METRE, (0.0, 700.0), 12.0, all_stiffness), wrap(&varying)),
+            "Bubble wrap that gives way: its true K is dashed. What lags behind it is the memory.",
+            with_truth(varying.plot(NEWTON_PER_METRE, (0.0, 700.0), 12.0, all_stiffness), wrap(&varying)?),
         ),
         figure(
             9,
             "Time-varying contact: damping by the four methods",
-            "Each method's B on the bubble wrap, which holds 1.5 N s/m.",
+            &format!("Each method's B on the bubble wrap, which holds {} N s/m.", truth(Contact::Varying)[1]),
             varying.plot(NEWTON_SECOND, (-5.0, 15.0), 12.0, all_damping),
         ),
         figure(
             10,
             "Medium contact: stiffness by the four methods",
-            "A pad of 3000 N/m (dashed), which the tool hardly enters. EWRLS takes seconds, for a depth of 3 mm says little against its P(0).",
-            with_truth(medium.plot(NEWTON_PER_METRE, (0.0, 4000.0), 6.0, all_stiffness), level(3000.0)),
+            "A pad (its true K dashed) that the tool hardly enters: a few millimetres say little against a P(0) that was chosen for soft things.",
+            with_truth(
+                medium.plot(NEWTON_PER_METRE, (0.0, 4000.0), 6.0, all_stiffness),
+                level(truth(Contact::Medium)[0]),
+            ),
         ),
         figure(
             11,
             "Medium contact: damping by the four methods",
-            "Each method's B on the pad, which holds 5 N s/m (dashed).",
-            with_truth(medium.plot(NEWTON_SECOND, (-10.0, 30.0), 6.0, all_damping), level(5.0)),
+            "Each method's B on the pad; the truth is dashed.",
+            with_truth(medium.plot(NEWTON_SECOND, (-10.0, 30.0), 6.0, all_damping), level(truth(Contact::Medium)[1])),
         ),
         figure(
             12,
             "How many updates a second each method does",
-            "The device (dots, joined) at its worst update, against the paper's MATLAB on a PC with nineteen times the clock (the same colour, dashed). On the device the window costs nothing; the dashed line at 1 kHz is what a control loop asks for.",
+            "The device at its worst update (dots, joined) against the paper's MATLAB on a PC with nineteen times the clock (the same colour, dashed). The line at 1 kHz is what a control loop asks for.",
             rates_plot(rates),
         ),
     ])
@@ -210,11 +216,21 @@ fn level(value: f64) -> Vec<(f64, f64)> {
     vec![(0.0, value), (100.0, value)]
 }
 
-/// K of the rig file of the bubble wrap.
-fn wrap(varying: &Traces<'_>) -> Vec<(f64, f64)> {
-    debug_assert_eq!(varying.contact, Contact::Varying);
-    let course = |t: f64| 589.0 * (1.0 - 0.618 * (1.0 - (-(t + varying.begin) / 2.5).exp()));
-    (0..140).map(|k| f64::from(k) * 0.1).map(|t| (t, course(t))).collect()
+/// K and B of a rig file, at the surface and at the start; NaN where there is no contact.
+fn truth(contact: Contact) -> [f64; 2] {
+    let found = contact.rig().ok().and_then(|rig| rig.contact);
+    found.map_or([f64::NAN; 2], |contact| [contact.stiffness, contact.damping])
+}
+
+/// K of the bubble wrap over time, as its rig file has it.
+fn wrap(varying: &Traces<'_>) -> Result<Vec<(f64, f64)>> {
+    let rig = varying.contact.rig()?;
+    let settling = crate::effects::resolve_all(&rig, "the bubble wrap")?;
+    let settling = settling.iter().find(|resolved| resolved.effect.card().name == "time_varying_stiffness");
+    let (change, time) = settling.map_or((0.0, 1.0), |resolved| (resolved.values[0], resolved.values[1]));
+    let [stiffness, _] = truth(varying.contact);
+    let course = |t: f64| stiffness * (1.0 + change * (1.0 - (-(t + varying.begin) / time).exp()));
+    Ok((0..140).map(|k| f64::from(k) * 0.1).map(|t| (t, course(t))).collect())
 }
 
 fn rates_plot(rates: &[Rate]) -> Plot {
@@ -257,8 +273,8 @@ pub fn of_better(steps: &Trial, flights: &[force::Row]) -> Result<Vec<Figure>> {
     ];
     let samples = steps.samples(1);
     let mut runs = Vec::new();
-    for (at, (name, estimator, is_matched)) in shown.into_iter().enumerate() {
-        runs.push((name, at, estimator.run(better::front_end(is_matched), &samples)?));
+    for ((name, estimator, is_matched), colour) in shown.into_iter().zip([0, 8, 2, 3, 1]) {
+        runs.push((name, colour, estimator.run(better::front_end(is_matched), &samples)?));
     }
     let begin = runs.last().map_or(0, |(.., estimates)| super::measure::contact(estimates).start);
     let [up, _] = better::JUMPS;
@@ -286,25 +302,25 @@ pub fn of_better(steps: &Trial, flights: &[force::Row]) -> Result<Vec<Figure>> {
         figure(
             13,
             "Damping, without the delay",
-            "B around a jump of K at 0. The truth is 5 N s/m (dashed). What passes the paper's velocity filter settles a quarter below it; what passes the matched filter settles on it.",
+            "B around a jump of K at 0; the truth is dashed. Behind the paper's velocity filter B settles beside it, behind the matched filter on it.",
             with_truth(damped, vec![(-500.0, 5.0), (3000.0, 5.0)]),
         ),
         figure(
             14,
             "The touch: who knows K first",
-            "K in the first 0.4 s of a contact of 250 N/m (dashed). With the matched filter a handful of samples is enough.",
+            "K in the first 0.4 s of a contact; the truth is dashed.",
             with_truth(onset, vec![(0.0, 250.0), (400.0, 250.0)]),
         ),
         figure(
             15,
             "A jump of K from 250 to 900 N/m: who follows",
-            "K around the jump (truth dashed). A window of 300 needs 300 samples; a window that shrinks, and a recursion that begins again, need as long as it takes to be sure that something has changed.",
+            "K around the jump; the truth is dashed. A window of 300 needs its 300 samples; a window that shrinks, and a recursion that begins again, need as long as it takes to be sure that something has changed.",
             with_truth(stepped, jump),
         ),
         figure(
             16,
             "Force under control when K jumps",
-            "An adaptive controller holds 3 N by each estimator's K; K jumps from 250 to 900 N/m at 0. The force is the mean over one period of the dither. The sooner K is known, the sooner the force is back.",
+            "An adaptive controller holds 3 N by the K of an estimator while the true K jumps at 0. The force is its mean over one period of the dither. The sooner K is known, the sooner the force is back.",
             flights_plot(flights),
         ),
     ])

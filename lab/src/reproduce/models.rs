@@ -191,7 +191,7 @@ struct Found {
 }
 
 fn identify<const P: usize>(model: ContactModel, spreads: [f32; P], trials: &[Trial]) -> Result<Vec<Found>> {
-    let front_end = super::estimator::matched().front_end;
+    let front_end = palpate::FrontEndConfig::BENCH;
     let identified = trials.iter().map(|trial| {
         let mut stream = ModelStream::new(front_end, model).map_err(|error| anyhow!("{error}"))?;
         let config = ParameterRlsConfig {

@@ -45,8 +45,8 @@ impl Source {
     pub fn find(count: bool) -> Result<Self> {
         let kept = profile::kept_costs()?;
         if !count {
-            let words = "Counted by `palpate profile` when the code was last changed, and held to that within 2 % by a test \
-                         (lab/budget.csv); `--count` counts anew in QEMU.";
+            let words = "Counted in QEMU by palpate profile when the code was last changed, and held to that within 2 % by a test \
+                         (lab/budget.csv); reproduce --count counts anew.";
             return Ok(Self { words: words.into(), costs: kept });
         }
         match crate::tools::for_the_device(Leave::Look) {

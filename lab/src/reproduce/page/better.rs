@@ -95,8 +95,12 @@ fn line(results: &Results, row: &Row) -> Markup {
     html! {
         tr.best[row.estimator == Estimator::Cusum] {
             th scope="row" { (row.name()) }
-            @for ((value, decimals), (words, meets)) in values.into_iter().zip(AIMS.iter().skip(1)) {
-                td.met[!words.is_empty() && meets(row)].missed[!words.is_empty() && !meets(row)] { (spread(value, decimals)) }
+            @for (at, ((value, decimals), (words, meets))) in values.into_iter().zip(AIMS.iter().skip(1)).enumerate() {
+                td.met[!words.is_empty() && meets(row)].missed[!words.is_empty() && !meets(row)] {
+                    (spread(value, decimals))
+                    // A mean in time is no comfort to the trial that was late.
+                    @if at < 3 { small { "worst " (number(value.greatest, 0)) } }
+                }
             }
             td { (row.false_alarms) }
             td { @match results.rates.cost(update, window) { Some(cost) => (cost.instructions_worst), None => "–" } }

@@ -20,11 +20,23 @@ pub(super) fn section(results: &Results) -> Markup {
             h2 #force-title { "Why a fast estimate matters" }
             p {
                 "An indirect adaptive controller holds a force. The drive keeps its controller of the position; above it, the commanded depth is what the wanted force needs by the estimated K, and a slow integral mends the rest. "
-                "K jumps from 250 to 900 N/m, and back 5 s later. With the true K the force would be back as soon as the tool has moved; without any estimate only the integral is left. A late estimate is worse than none: it moves the tool when the integral has long mended the force."
+                "K jumps from 250 to 900 N/m, and back 5 s later. With the true K the force would be back as soon as the tool has moved; without any estimate only the integral is left. "
+                (worse(results)) " A late estimate moves the tool when the integral has long mended the force."
             }
             (wide("Force control by each estimate", &table))
             (grid(&results.force_figures))
         }
+    }
+}
+
+/// Which estimates leave more error than none.
+fn worse(results: &Results) -> String {
+    let none = results.force.iter().find(|row| row.source == Source::Fixed).map_or(f64::NAN, |row| row.rms.mean);
+    let worse: Vec<String> =
+        results.force.iter().filter(|row| row.rms.mean > none).map(|row| row.source.name()).collect();
+    match worse.as_slice() {
+        [] => "Every estimate leaves less error than none.".into(),
+        names => format!("Worse than no estimate at all, by the rms of the error: {}.", names.join(", ")),
     }
 }
 

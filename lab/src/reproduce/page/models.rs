@@ -8,7 +8,7 @@ use crate::page::quantity::with_interval;
 
 pub(super) fn section(cases: &[Case]) -> Markup {
     let table = html! {
-        table.claims {
+        table.claims.models {
             caption { "Means of " (SEEDS) " trials; ± is the 95 % interval that the estimator tells" }
             thead { tr { th scope="col" { "What is touched" } th scope="col" { "law" } th scope="col" { "found by that law" } th scope="col" { "K and B by spring and damper alone" } th scope="col" { "RMSE%: that law / spring and damper" } } }
             tbody { @for case in cases { (line(case)) } }
@@ -17,7 +17,7 @@ pub(super) fn section(cases: &[Case]) -> Markup {
     html! {
         section #models aria-labelledby="models-title" {
             h2 #models-title { "Beyond K and B" }
-            p { "Other contacts are linear in what is not known of them, too. The library makes their rows (" code { "ContactModel" } ", " code { "ModelStream" } ") and the recursion takes two or three parameters (" code { "ParameterRls" } "); a law of two passes through every other estimator as well. The bench below has each of them, and the estimator is told which." }
+            p { "Other contacts are linear in what is not known of them, too. The library makes their rows (" code { "ContactModel" } ", " code { "ModelStream" } ") and the recursion takes two or three parameters (" code { "ParameterRls" } "); a law of two passes through every other estimator as well. The bench has each of them, and the estimator, behind the matched filter of 20 Hz, is told which." }
             (wide("Other contact laws", &table))
         }
     }
