@@ -23,6 +23,16 @@ pub struct RecursiveState {
 }
 
 impl RecursiveState {
+    /// The estimate without what is left in it of the zero that it started from; `None` until both parameters have been told.
+    ///
+    /// A small P(0) draws a recursion to its start for seconds. How much of the start is still in it is known, for its gains are:
+    /// `M (I - M)^-1 (start - estimate)` ([`Propagation`]). Taken off, what is left is the weighted least squares of the samples
+    /// alone. The state and its innovations stay as they are, so this can be asked for or left at any sample.
+    pub fn without_start(&self) -> Option<Impedance> {
+        let told = self.estimate.moved(-1.0, self.uncertainty.confidence(self.estimate).remainder);
+        told.is_finite().then_some(told)
+    }
+
     /// With the estimate at `estimate` and all else at its start.
     pub(crate) fn new(initial_covariance: f32, estimate: Impedance) -> Self {
         Self::believing(Covariance::identity(initial_covariance), estimate)

@@ -61,6 +61,38 @@ fn forgetting_is_the_weighted_batch_with_its_faded_prior() {
 }
 
 #[test]
+fn without_its_start_it_is_the_weighted_batch_alone() {
+    let law = Ewrls::new(EwrlsConfig::default()).expect("sound settings");
+    let lambda = f64::from(EwrlsConfig::default().forgetting_factor);
+    for trial in crate::simulator::Trial::environments() {
+        for contact in
+            &super::Case::new(trial.name.to_owned(), trial.samples(1), palpate::FrontEndConfig::BENCH).contacts
+        {
+            let (rows, mut state, mut far) = (reference::rows(contact), law.start(), 0.0_f64);
+            assert_eq!(state.without_start(), None, "nothing has been told");
+            for k in 0..contact.len() {
+                law.update(&mut state, Recent::of(&contact[k..=k]));
+                if k % EVERY != EVERY - 1 {
+                    continue;
+                }
+                let got = reference::theta(state.without_start().expect("both are told"));
+                let want = reference::weighted(&rows[..=k], lambda, None);
+                far = far.max((reference::theta(state.estimate).x - want.x).abs() / want.x);
+                for (axis, name) in ["K", "B"].into_iter().enumerate() {
+                    let error = (got[axis] - want[axis]).abs() / want[axis].abs();
+                    // What is taken off is many times what stays in the first samples, and is rounded with it; B is told from a
+                    // rate that is small beside the depth.
+                    let [early, late] = [[0.02, 0.1], [2e-3, 0.01]].map(|bounds| bounds[axis]);
+                    let bound = if k < 300 { early } else { late };
+                    assert!(error < bound, "{} sample {k}, {name}: {} for {}", trial.name, got[axis], want[axis]);
+                }
+            }
+            assert!(far > 0.3, "{}: the estimate with its start was never far off, {far}", trial.name);
+        }
+    }
+}
+
+#[test]
 fn a_reset_makes_the_estimate_the_prior_of_the_next_batch() {
     let config = ResetRlsConfig::default();
     let law = ResetRls::new(config).expect("sound settings");

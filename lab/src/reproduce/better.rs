@@ -74,6 +74,7 @@ pub fn compared() -> Vec<(Estimator, bool)> {
     ];
     let better = [
         Estimator::Ewrls { window: 300, covariance: PAPER_COVARIANCE },
+        Estimator::UnbiasedEwrls,
         Estimator::Bls(300),
         Estimator::RidgeBls(300),
         Estimator::Blmf(300),

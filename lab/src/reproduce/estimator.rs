@@ -20,6 +20,8 @@ pub enum Estimator {
         /// P(0).
         covariance: f32,
     },
+    /// The same with what is left of its start taken off.
+    UnbiasedEwrls,
     /// Self-perturbing, beta 100.
     Sprls {
         /// Sensitivity.
@@ -65,6 +67,7 @@ impl Estimator {
     pub fn name(self) -> String {
         match self {
             Self::Ewrls { .. } => "EWRLS".into(),
+            Self::UnbiasedEwrls => "EWRLS without its start".into(),
             Self::Sprls { .. } => "SPRLS".into(),
             Self::Bls(_) => "BLS".into(),
             Self::RidgeBls(_) => "BLS with a prior".into(),
@@ -79,7 +82,7 @@ impl Estimator {
     /// Name and window in the budget of the device.
     pub fn update(self) -> (&'static str, Option<u16>) {
         match self {
-            Self::Ewrls { .. } => ("ewrls", None),
+            Self::Ewrls { .. } | Self::UnbiasedEwrls => ("ewrls", None),
             Self::Sprls { .. } => ("sprls", None),
             Self::Bls(window) => ("bls", Some(window)),
             Self::RidgeBls(window) => ("ridge_bls", Some(window)),
@@ -113,6 +116,7 @@ impl Running {
     pub fn new(estimator: Estimator, config: StreamConfig) -> Result<Self> {
         let made = match estimator {
             Estimator::Ewrls { window, covariance } => Self::of(config, ewrls(window, covariance)),
+            Estimator::UnbiasedEwrls => Self::without_start(config),
             Estimator::Sprls { gamma, covariance } => Self::of(config, sprls(gamma, covariance)),
             Estimator::Bls(window) => Self::of(config, BlockLeastSquares::new(BlockConfig::of(window))),
             Estimator::RidgeBls(window) => Self::of(config, BlockLeastSquares::new(ridge(window))),
@@ -138,6 +142,19 @@ impl Running {
         let update = move |sample| {
             let event = stream.update(sample)?;
             Ok(tracker.follow(&stream, &event))
+        };
+        Ok(Self(Box::new(update)))
+    }
+
+    /// The paper's EWRLS, its start taken off each estimate; in SI units, in which the bench is.
+    fn without_start(config: StreamConfig) -> Result<Self, ConfigError> {
+        let mut stream = Stream::<1>::new(config)?;
+        let mut tracker = Tracker::new(ewrls(300, PAPER_COVARIANCE)?);
+        let update = move |sample| {
+            let event = stream.update(sample)?;
+            let estimate = tracker.follow(&stream, &event);
+            let told = if event.reading.contact { tracker.state().without_start() } else { None };
+            Ok(Estimate { impedance: told.unwrap_or(estimate.impedance), ..estimate })
         };
         Ok(Self(Box::new(update)))
     }

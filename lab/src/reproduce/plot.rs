@@ -179,8 +179,8 @@ fn ticks(ends: (f64, f64), logarithmic: bool) -> Vec<(f64, String)> {
     let step = [1.0, 2.0, 2.5, 5.0, 10.0].map(|m| m * unit).into_iter().find(|step| *step >= rough).unwrap_or(rough);
     let first = (ends.0 / step - 1e-9).ceil() as i64;
     let last = (ends.1 / step + 1e-9).floor() as i64;
-    let decimals =
-        (-(step.log10() + 1e-9).floor()).max(0.0) as usize + usize::from(step / unit > 2.4 && step / unit < 2.6);
+    let quarter = i32::from((2.4..2.6).contains(&(step / unit)));
+    let decimals = (quarter - (step.log10() + 1e-9).floor() as i32).max(0) as usize;
     (first..=last).map(|n| (n as f64 * step, format!("{:.*}", decimals, n as f64 * step).replace('-', "−"))).collect()
 }
 
@@ -223,6 +223,8 @@ mod tests {
     fn ticks_are_round_and_within() {
         let words = |ends| ticks(ends, false).into_iter().map(|(_, words)| words).collect::<Vec<_>>();
         assert_eq!(words((0.0, 1000.0)), ["0", "200", "400", "600", "800", "1000"]);
+        assert_eq!(words((0.0, 1100.0)), ["0", "250", "500", "750", "1000"]);
+        assert_eq!(words((0.0, 1.2)), ["0.00", "0.25", "0.50", "0.75", "1.00"]);
         assert_eq!(words((-0.5, 0.5)), ["−0.4", "−0.2", "0.0", "0.2", "0.4"].map(str::to_owned));
         assert_eq!(words((15.0, 16.0)), ["15.0", "15.2", "15.4", "15.6", "15.8", "16.0"]);
         assert_eq!(

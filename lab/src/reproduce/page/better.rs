@@ -114,6 +114,7 @@ fn steps() -> Markup {
         h3 { "What each of them is" }
         ul {
             li { strong { "Matched filter. " } "The paper low-passes the velocity alone and so delays it against the force; that biases B. Passed through the same filter, depth, velocity and force keep the law between them." }
+            li { strong { "EWRLS without its start. " } "How much of K = 0 is still in the estimate is known from its gains, and is taken off: the onset comes for nothing, a jump does not." }
             li { strong { "A ridge that carries the prior. " } "K and B are taken to be zero, give or take 1000 N/m and 30 N s/m, worth one sample 0.1 mm deep: no minimum fill is waited for, and no P(0) is believed for a second." }
             li { strong { "A window that shrinks. " } "A cumulative sum of the innovation says that the material has changed; then only the newest 20 samples count, and the window grows again from there." }
             li { strong { "CUSUM-reset RLS. " } "The same sum, and a recursion that begins again from its prior." }

@@ -24,14 +24,14 @@ fn table(claims: &[&Claim]) -> Markup {
     let readings = claims.first().map(|claim| claim.findings.iter().map(|finding| finding.reading).collect::<Vec<_>>());
     let table = html! {
         table.claims {
-            thead { tr { th scope="col" { "Claim" } th scope="col" { "where" } th scope="col" { "paper" } @for reading in readings.unwrap_or_default() { th scope="col" { (reading) } } } }
+            thead { tr { th scope="col" { "Claim" } @for reading in readings.unwrap_or_default() { th scope="col" { (reading) } } th scope="col" { "paper" } th scope="col" { "where" } } }
             tbody {
                 @for claim in claims {
                     tr {
                         th scope="row" { (claim.words) }
-                        td { (claim.place) }
-                        td { (claim.paper) }
                         @for finding in &claim.findings { (cell(finding)) }
+                        td { (claim.paper) }
+                        td { (claim.place) }
                     }
                 }
             }

@@ -19,6 +19,7 @@ pub(super) fn section(cases: &[Case]) -> Markup {
             h2 #models-title { "Beyond K and B" }
             p { "Other contacts are linear in what is not known of them, too. The library makes their rows (" code { "ContactModel" } ", " code { "ModelStream" } ") and the recursion takes two or three parameters (" code { "ParameterRls" } "); a law of two passes through every other estimator as well. The bench has each of them, and the estimator, behind the matched filter of 20 Hz, is told which." }
             (wide("Other contact laws", &table))
+            p.fine { "The tool's mass takes a little of B with it: the drive's effort is held for a period and the force is read right after it has changed, so the sensor sees the mass half a period early, which is m w² T / 2 of B at an angular frequency w." }
         }
     }
 }
