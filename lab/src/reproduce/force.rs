@@ -215,7 +215,7 @@ fn row(source: Source, mut flights: Vec<Flight>) -> Row {
     let over = |measure: &dyn Fn(&Flight) -> f64| Spread::of(flights.iter().map(measure));
     let settled = |rows: std::ops::Range<usize>| {
         over(&|flight| {
-            let last = departures(flight, rows.clone()).iter().rposition(|d| !(*d <= BAND));
+            let last = departures(flight, rows.clone()).iter().rposition(|d| d.is_nan() || *d > BAND);
             last.map_or(0.0, |last| last as f64 + 1.0)
         })
     };

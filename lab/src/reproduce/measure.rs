@@ -70,7 +70,7 @@ pub fn damping(estimates: &[Estimate]) -> impl Iterator<Item = f64> + '_ {
 
 /// Rows from the first of `estimates` until K stays within `share` of `truth`; all of them where it never does.
 pub fn settling(estimates: &[Estimate], truth: f64, share: f64) -> usize {
-    let outside = |k: f64| !((k - truth).abs() <= share * truth);
+    let outside = |k: f64| k.is_nan() || (k - truth).abs() > share * truth;
     let values: Vec<f64> = stiffness(estimates).collect();
     values.iter().rposition(|k| outside(*k)).map_or(0, |last| last + 1)
 }

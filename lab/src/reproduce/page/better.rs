@@ -8,7 +8,9 @@ use super::super::estimator::Estimator;
 use super::{grid, number, spread, wide};
 
 /// What was aimed at: words, and whether a row meets it.
-const AIMS: [(&str, fn(&Row) -> bool); 10] = [
+type Aim = (&'static str, fn(&Row) -> bool);
+
+const AIMS: [Aim; 10] = [
     ("", |_| true),
     ("≤ 30", |row| row.onset.mean <= 30.0),
     ("≤ 45", |row| row.up.mean <= 45.0),
