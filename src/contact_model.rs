@@ -10,20 +10,20 @@ pub const MOST_PARAMETERS: usize = 3;
 /// Which columns a row of the regression has. x: penetration, v: its rate, a: the tool's acceleration, F: measured force.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum ContactModel {
-    /// `F = K x + B v`: K [N/m], B [N s/m].
+    /// `F = K x + B v`: K (N/m), B (N s/m).
     KelvinVoigt,
-    /// `F = K x^n + B x^n v` at a given n (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440): K [N/m^n],
-    /// B [N s/m^(n+1)]. 1.5 for a sphere on an elastic half space, 1 for a flat punch.
+    /// `F = K x^n + B x^n v` at a given n (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440): K (N/m^n),
+    /// B (N s/m^(n+1)). 1.5 for a sphere on an elastic half space, 1 for a flat punch.
     HuntCrossley {
         /// n, 0.5 to 3.
         exponent: f32,
     },
-    /// `F = K x + B v + alpha x v`: damping that grows with depth from B at the surface; alpha [N s/m^2].
+    /// `F = K x + B v + alpha x v`: damping that grows with depth from B at the surface; alpha (N s/m^2).
     GrowingDamping,
-    /// `F = K x + B v + c`: a force sensor whose zero is off by c [N], or a surface that lies deeper than it was said, by
+    /// `F = K x + B v + c`: a force sensor whose zero is off by c (N), or a surface that lies deeper than it was said, by
     /// `-c / K` ([`contact_plane`]). In contact nothing tells the two apart.
     BiasedKelvinVoigt,
-    /// `F = K x + B v + m a`: the mass m [kg] beyond the force sensor.
+    /// `F = K x + B v + m a`: the mass m (kg) beyond the force sensor.
     ToolMass,
 }
 

@@ -234,11 +234,12 @@ fn three_parameters(recording: &Recording, gauge: &mut Gauge) -> Result<(), Faul
         let mut state = law.start();
         let bytes = size_of::<ModelStream>() + size_of_val(&state);
         whole(recording, gauge, name, 0, bytes, |sample| {
-            if let Ok(row) = stream.update(sample) {
-                if row.contact && !row.restarted {
-                    black_box(law.update(&mut state, row.first(), row.force));
-                    black_box(law.half_widths(&state));
-                }
+            if let Ok(row) = stream.update(sample)
+                && row.contact
+                && !row.restarted
+            {
+                black_box(law.update(&mut state, row.first(), row.force));
+                black_box(law.half_widths(&state));
             }
         })?;
     }
