@@ -338,5 +338,5 @@ fn flights_plot(flights: &[force::Row]) -> Plot {
     let mut curves: Vec<Curve> = flights.iter().filter(shown).enumerate().map(curve).collect();
     let wanted = vec![(-300.0, WANTED), (2000.0, WANTED)];
     curves.insert(0, Curve { name: "wanted".into(), colour: 7, dashed: true, points: wanted });
-    plot("milliseconds since the jump", "force, N", (-300.0, 2000.0), (1.5, 6.5), curves)
+    plot("milliseconds since the jump", "force, N", (-300.0, 2000.0), (0.0, 6.5), curves)
 }
