@@ -87,6 +87,18 @@ impl Profile {
         self.cases.iter().map(|case| case.passes.len()).sum()
     }
 
+    /// Every panic that an update can come to, after the name of the update.
+    #[must_use]
+    pub fn panics(&self) -> Vec<String> {
+        let calls = Calls::of(&self.image);
+        let of_case = |case: &Case| -> Vec<String> {
+            let Some(start) = figures::entry(&self.image, case) else { return vec![format!("{}: no code", case.name)] };
+            let panics = calls.reached(start).into_iter().filter(|function| calls::is_panic(function));
+            panics.map(|function| format!("{}: {}", case.name, function.name)).collect()
+        };
+        self.cases.iter().skip(1).flat_map(of_case).collect()
+    }
+
     /// Every figure that is not within the budget of the sources, in words; empty where all are.
     ///
     /// # Errors

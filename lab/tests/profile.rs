@@ -30,6 +30,7 @@ fn every_update_is_counted_twice_alike_and_costs_what_its_budget_says() {
         beyond.is_empty(),
         "beyond lab/budget.csv; where that is meant: cargo run --release -p palpate-lab -- profile --renew-budget\n{beyond}"
     );
+    assert_eq!(profile.panics(), Vec::<String>::new(), "an update can come to these");
     let find = |name: &str, window: Option<u16>| {
         let found = profile.figures.iter().find(|f| f.name == name && f.window == window);
         found.unwrap_or_else(|| panic!("{name} {window:?} was not measured"))

@@ -64,6 +64,12 @@ impl Figures {
     }
 }
 
+/// Where the code of a case begins.
+pub fn entry(image: &Image, case: &Case) -> Option<u32> {
+    let called = |at: &u32| image.function_at(*at).filter(|function| function.name.contains("gauge::call"));
+    case.times.keys().find_map(|at| called(at).map(|function| function.start))
+}
+
 /// The figures of all cases but the first, which is of nothing and tells what the rest is to be relieved of.
 ///
 /// # Errors
@@ -82,10 +88,7 @@ pub fn of(image: &Image, cases: &[Case], updates: &[usize]) -> Result<Vec<Figure
                 (0..case.passes.len()).map(|k| f64::from(of(k))).sum::<f64>() / case.passes.len() as f64
             };
             let band = |k: usize, end: usize| relieved(case.passes[k].cycles[end], nothing.cycles[end]);
-            let entry = case.times.keys().find_map(|at| {
-                image.function_at(*at).filter(|function| function.name.contains("gauge::call")).map(|f| f.start)
-            });
-            let entry = entry.with_context(|| format!("{}: nothing was called", case.name))?;
+            let entry = entry(image, case).with_context(|| format!("{}: nothing was called", case.name))?;
             let blind = calls.blind(entry);
             ensure!(blind.is_empty(), "{}: a call through a register in {}", case.name, blind[0].name);
             let lines: BTreeSet<u32> = case.times.keys().map(|address| address / LINE).collect();
