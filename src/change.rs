@@ -57,10 +57,10 @@ impl ChangeConfig {
         Ok(self)
     }
 
-    /// Takes the innovation of one sample, in internal units; whether the material has changed.
+    /// Takes the innovation of one sample, in internal units; whether the material has changed. One that is no number says nothing.
     pub fn update(&self, state: &mut ChangeState, innovation: f32) -> bool {
-        if state.since < self.settling {
-            state.since += 1;
+        if state.since < self.settling || innovation.is_nan() {
+            state.since = state.since.saturating_add(1);
             return false;
         }
         let usual = larger(state.mean_square, self.noise * self.noise);
