@@ -1,6 +1,7 @@
 //! Drawing all cases, before any is diagnosed.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +10,7 @@ use anyhow::Result;
 use palpate_cases::python::Python;
 use palpate_cases::{Simulator, Source, Truth, draw, draw_in};
 
-use super::plan::Entry;
+use super::plan::Entry as Planned;
 
 /// A case whose recordings lie in a folder of their own.
 #[derive(Debug)]
@@ -26,7 +27,7 @@ pub struct Drawn {
 /// # Errors
 /// Nothing can be written to `home`.
 pub fn draw_all(
-    entries: &[Entry],
+    entries: &[Planned],
     seed: u64,
     home: &Path,
     python: Option<&Python>,
@@ -44,7 +45,7 @@ pub fn draw_all(
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
     let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let place = |entry: &Entry| entries.iter().position(|other| other.index == entry.index);
+    let place = |entry: &Planned| entries.iter().position(|other| other.index == entry.index);
     results.sort_by_key(|(entry, _)| place(entry));
     let (mut drawn, mut failed) = (Vec::new(), Vec::new());
     for (entry, result) in results {
@@ -63,17 +64,15 @@ struct Player<'a> {
 }
 
 impl Player<'_> {
-    fn play(&mut self, entry: &Entry, seed: u64, home: &Path) -> Result<Drawn> {
+    fn play(&mut self, entry: &Planned, seed: u64, home: &Path) -> Result<Drawn> {
         let case = match (entry.source, self.python) {
             (Source::Own, _) => draw(seed, entry.index, &entry.wish)?,
             (source, Some(python)) => {
-                if !self.simulators.contains_key(&source) {
-                    self.simulators.insert(source, Simulator::start(python, source)?);
-                }
-                match self.simulators.get_mut(&source) {
-                    Some(simulator) => draw_in(simulator, seed, entry.index, &entry.wish)?,
-                    None => anyhow::bail!("{} was started and is gone", source.name()),
-                }
+                let simulator = match self.simulators.entry(source) {
+                    Entry::Occupied(running) => running.into_mut(),
+                    Entry::Vacant(place) => place.insert(Simulator::start(python, source)?),
+                };
+                draw_in(simulator, seed, entry.index, &entry.wish)?
             }
             (source, None) => anyhow::bail!("{} is not installed", source.name()),
         };

@@ -38,9 +38,9 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
                 " of the floor. Recorded force and the simulation without it, values refitted, lie over one another; row by row the difference \
                  is noise, and the effect, as the tool models it, runs within. The tool says: " strong { (picture.named) }
             }
-            (panel("Force over time", &picture.unit, &picture.time, &[("recorded", &picture.recorded), ("simulated", &picture.simulated)]))
+            (panel("Force over time", picture.unit, &picture.time, &[("recorded", &picture.recorded), ("simulated", &picture.simulated)]))
             p.legend { span.recorded { "● recorded" } "  " span.simulated { "━ simulated without the effect" } }
-            (panel("Recorded less simulated", &picture.unit, &picture.time,
+            (panel("Recorded less simulated", picture.unit, &picture.time,
                 &[("recorded", &difference(&picture)), ("effect", &picture.effect)]))
             p.legend {
                 span.recorded { "● recorded less simulated, deviation " (format!("{:.2e} {}", picture.deviation, picture.unit)) } "  "

@@ -60,7 +60,7 @@ fn point(class: &str, x: f64, hits: usize, of: usize) -> Markup {
 
 fn name(band: &Band) -> String {
     match (band.from, band.to) {
-        (from, to) if from == 0.0 => format!("below {to}"),
+        (0.0, to) => format!("below {to}"),
         (from, to) if to >= 1000.0 => format!("above {from}"),
         (from, to) => format!("{from} to {to}"),
     }
