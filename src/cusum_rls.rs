@@ -34,7 +34,7 @@ impl Default for CusumRlsConfig {
 /// Exponentially weighted least squares whose covariance goes back to its prior at a change that a cumulative sum of the
 /// innovation has found: quick where the material jumps, quiet where it does not.
 ///
-/// **The one to take** where K may change: on the paper's bench behind a matched filter of 30 Hz it has K within 10 % in less than
+/// **The one to take** where K may change: on the paper's bench behind a matched filter of 40 Hz it has K within 10 % in less than
 /// 30 ms of an onset, follows a jump within 45 ms, and scatters by less than 0.1 % of K in between. It keeps no window (under 150 bytes
 /// of state), costs a third less than block least squares, and its intervals begin anew with it. `docs/paper.md` has it beside
 /// the others. Where the material drifts without rest, or the model fits badly, [`crate::BlockLeastSquares`] of a short window
