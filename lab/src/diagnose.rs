@@ -3,7 +3,7 @@
 //! The recordings are checked ([`check`]) and brought onto one clock ([`raw`], [`unround`]); every channel is looked at
 //! through the same filter ([`lens`], [`track`]). The rig's model ([`model`]) is fitted ([`fit`]), twins of it tell what the
 //! sensors alone would leave ([`twin`], [`whiten`], [`chance`]), and every effect is asked what it could take of the rest
-//! ([`score`], [`tones`], [`texture`], [`fold`]). The best is added until nothing worth it is left ([`study`], [`select`]);
+//! ([`score`], [`tones`], [`texture`], [`fold`]). The best is added until nothing worth it is left ([`stand`], [`select`]);
 //! the judge names it, or owns that nothing explains the rest ([`judge`]).
 
 pub mod answer;

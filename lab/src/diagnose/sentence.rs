@@ -77,11 +77,15 @@ fn listed(names: &[String]) -> String {
 #[must_use]
 pub fn on_drive(name: &str) -> Option<&'static str> {
     match name {
-        "time_varying_stiffness" => {
-            Some("`ewrls`, `sprls` or a block law over a short window: they follow a stiffness that changes")
+        "hunt_crossley_damping" => {
+            Some("ParameterRls with ContactModel::GrowingDamping follows K, B and alpha: regressor x v")
         }
+        "tool_inertia" => Some("ParameterRls with ContactModel::ToolMass follows K, B and the mass: regressor a"),
         "force_bias" => Some(
-            "`[sensors] force_zero_n` of the rig file, or a tare before touching: the library takes the force without its zero",
+            "ParameterRls with ContactModel::BiasedKelvinVoigt follows K, B and the bias: regressor 1; or tare before touching",
+        ),
+        "time_varying_stiffness" => Some(
+            "CusumRls follows a stiffness that jumps, AdaptiveWindow one that drifts: regressors x and v",
         ),
         _ => None,
     }

@@ -30,7 +30,7 @@ fn card(physics: &Physics) -> Markup {
             }
             p.fine { (evidence(physics, unknown)) }
             @if let Some(regressor) = &physics.on_drive {
-                p.fine { "The embedded library carries it in the control loop as the regressor " code { (regressor) } "." }
+                p.fine { "In the control loop: " (regressor) "." }
             }
         }
     }
