@@ -130,13 +130,14 @@ pub fn panics_reached_from(image: &Path, entry: &str) -> Result<Vec<String>> {
     Ok(panics.chain(calls.blind(start)).map(|function| function.name.clone()).collect())
 }
 
-/// Bytes of stack of the deepest way from the function `entry` of an image; `None` where a function calls itself.
+/// Bytes of stack of the deepest way from the function `entry` of an image, or of all its functions where that cannot be told.
 ///
 /// # Errors
 /// The image cannot be read, or has no such function.
-pub fn stack_from(image: &Path, entry: &str) -> Result<Option<u32>> {
+pub fn stack_from(image: &Path, entry: &str) -> Result<u32> {
     let image = Image::read(image)?;
-    Ok(Calls::of(&image).stack(image.label(entry)?))
+    let (calls, start) = (Calls::of(&image), image.label(entry)?);
+    Ok(calls.stack(start).unwrap_or_else(|| calls.frames(start)))
 }
 
 /// The image that runs the estimators from the interrupt, built.
