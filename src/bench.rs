@@ -15,7 +15,7 @@ use crate::front_end::Rejection;
 use crate::gradient::{Gradient, GradientConfig};
 use crate::reset_rls::{ResetRls, ResetRlsConfig};
 use crate::sprls::{Sprls, SprlsConfig};
-use crate::stream::{Stream, StreamConfig, Tracker};
+use crate::stream::{Checked, Stream, StreamConfig, Tracker};
 use serde::{Deserialize, Serialize};
 
 /// An estimator by name.
@@ -178,6 +178,12 @@ pub type BenchEstimates = [Estimate; Method::ALL.len()];
 pub struct Bench {
     methods: Methods,
     stream: Stream<BENCH_WINDOW>,
+    laws: Laws,
+}
+
+/// One of each.
+#[derive(Debug, Clone)]
+struct Laws {
     rls: Tracker<Ewrls>,
     ewrls: Tracker<Ewrls>,
     sprls: Tracker<Sprls>,
@@ -192,17 +198,20 @@ pub struct Bench {
     directional_rls: Tracker<DirectionalRls>,
 }
 
-impl Bench {
-    /// Checks all settings, also of methods that do not run.
-    ///
-    /// # Errors
-    /// The first field that is out of range.
-    pub fn new(config: &BenchConfig) -> Result<Self, ConfigError> {
+/// All of a bench but its ring.
+#[derive(Debug, Clone)]
+pub(crate) struct BenchParts {
+    methods: Methods,
+    stream: Checked,
+    laws: Laws,
+}
+
+impl BenchParts {
+    /// Checks all settings.
+    pub(crate) fn of(config: &BenchConfig) -> Result<Self, ConfigError> {
         require(usize::from(config.block.window) <= BENCH_WINDOW, "window", "at most 2048 samples")?;
         let fourth = |direction| BlockLeastMeanFourth::new(config.block, direction);
-        Ok(Self {
-            methods: config.methods,
-            stream: Stream::new(config.stream)?,
+        let laws = Laws {
             rls: Tracker::new(Ewrls::new(config.rls)?),
             ewrls: Tracker::new(Ewrls::new(config.ewrls)?),
             sprls: Tracker::new(Sprls::new(config.sprls)?),
@@ -215,7 +224,30 @@ impl Bench {
             cusum_rls: Tracker::new(CusumRls::new(CusumRlsConfig::default())?),
             adaptive_bls: Tracker::new(AdaptiveWindow::new(AdaptiveWindowConfig::of(config.block.window))?),
             directional_rls: Tracker::new(DirectionalRls::new(DirectionalRlsConfig::default())?),
-        })
+        };
+        Ok(Self { methods: config.methods, stream: Checked::of(config.stream)?, laws })
+    }
+}
+
+impl Bench {
+    /// Checks all settings, also of methods that do not run.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: &BenchConfig) -> Result<Self, ConfigError> {
+        Ok(Self::of(BenchParts::of(config)?))
+    }
+
+    /// It cannot fail, so that who holds a bench can have it made where it is to be: a second one does not fit every stack.
+    pub(crate) fn of(parts: BenchParts) -> Self {
+        Self { methods: parts.methods, stream: Stream::of(parts.stream), laws: parts.laws }
+    }
+
+    /// Takes other settings in place, and forgets everything: bounded work, without a second bench.
+    pub(crate) fn configure(&mut self, parts: &BenchParts) {
+        self.stream.configure(parts.stream);
+        self.methods = parts.methods;
+        self.laws.clone_from(&parts.laws);
     }
 
     /// One sample through every method that runs.
@@ -224,26 +256,43 @@ impl Bench {
     /// Why the sample was rejected; then nothing but the clock has moved.
     pub fn update(&mut self, sample: Sample) -> Result<BenchEstimates, Rejection> {
         let event = self.stream.update(sample)?;
-        let (stream, methods) = (&self.stream, self.methods);
+        let (stream, methods, laws) = (&self.stream, self.methods, &mut self.laws);
         Ok(Method::ALL.map(|method| {
             if !methods.contains(method) {
                 return Estimate::NO_CONTACT;
             }
             match method {
-                Method::Rls => self.rls.follow(stream, &event),
-                Method::Ewrls => self.ewrls.follow(stream, &event),
-                Method::Sprls => self.sprls.follow(stream, &event),
-                Method::ResetRls => self.reset_rls.follow(stream, &event),
-                Method::Gradient => self.gradient.follow(stream, &event),
-                Method::Bls => self.bls.follow(stream, &event),
-                Method::Blms => self.blms.follow(stream, &event),
-                Method::Blmf => self.blmf.follow(stream, &event),
-                Method::NewtonBlmf => self.newton_blmf.follow(stream, &event),
-                Method::CusumRls => self.cusum_rls.follow(stream, &event),
-                Method::AdaptiveBls => self.adaptive_bls.follow(stream, &event),
-                Method::DirectionalRls => self.directional_rls.follow(stream, &event),
+                Method::Rls => laws.rls.follow(stream, &event),
+                Method::Ewrls => laws.ewrls.follow(stream, &event),
+                Method::Sprls => laws.sprls.follow(stream, &event),
+                Method::ResetRls => laws.reset_rls.follow(stream, &event),
+                Method::Gradient => laws.gradient.follow(stream, &event),
+                Method::Bls => laws.bls.follow(stream, &event),
+                Method::Blms => laws.blms.follow(stream, &event),
+                Method::Blmf => laws.blmf.follow(stream, &event),
+                Method::NewtonBlmf => laws.newton_blmf.follow(stream, &event),
+                Method::CusumRls => laws.cusum_rls.follow(stream, &event),
+                Method::AdaptiveBls => laws.adaptive_bls.follow(stream, &event),
+                Method::DirectionalRls => laws.directional_rls.follow(stream, &event),
             }
         }))
+    }
+
+    /// Forgets everything but the settings: the next sample is the first. Bounded work, whatever the window.
+    pub fn restart(&mut self) {
+        self.stream.restart();
+        self.laws.rls.restart();
+        self.laws.ewrls.restart();
+        self.laws.sprls.restart();
+        self.laws.reset_rls.restart();
+        self.laws.gradient.restart();
+        self.laws.bls.restart();
+        self.laws.blms.restart();
+        self.laws.blmf.restart();
+        self.laws.newton_blmf.restart();
+        self.laws.cusum_rls.restart();
+        self.laws.adaptive_bls.restart();
+        self.laws.directional_rls.restart();
     }
 
     /// The latest observations, in internal units.

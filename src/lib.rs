@@ -42,6 +42,7 @@
 //! | [`Estimate`], [`Flags`] | the answer and its quality |
 //! | [`Identifier`] | all of it for one law |
 //! | [`Bench`] | all laws side by side |
+//! | [`drive`] | sensors, faults, calibration and link of a real drive |
 //!
 //! Equation numbers are those of the paper that compared the laws on a one-degree-of-freedom bench.
 
@@ -64,6 +65,7 @@ mod cusum_rls;
 pub mod direct;
 mod direct_lmf;
 mod directional_rls;
+pub mod drive;
 mod error;
 mod estimate;
 mod ewrls;
@@ -133,3 +135,8 @@ pub use window::{Recent, Window};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// So is that of the drive's page.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/drive.md")]
+struct DrivePage;

@@ -60,6 +60,31 @@ pub struct Stream<const N: usize> {
     high: f32,
 }
 
+/// Settings that can be, with what follows from them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Checked {
+    front_end: FrontEnd,
+    assessor: Assessor,
+    contact_loss: ContactLoss,
+    four_counts: f32,
+    movement_decay: f32,
+}
+
+impl Checked {
+    pub(crate) fn of(config: StreamConfig) -> Result<Self, ConfigError> {
+        let front_end = FrontEnd::new(config.front_end)?;
+        config.sensors.check()?;
+        crate::error::require(config.movement_memory > 0, "movement_memory", "at least 1 sample")?;
+        Ok(Self {
+            front_end,
+            assessor: Assessor::new(&front_end, config.sensors),
+            contact_loss: config.contact_loss,
+            four_counts: 4.0 * config.sensors.position_resolution / config.front_end.units.penetration,
+            movement_decay: core::f32::consts::LN_2 / f32::from(config.movement_memory),
+        })
+    }
+}
+
 /// What a sample meant to the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
@@ -77,21 +102,23 @@ impl<const N: usize> Stream<N> {
     /// # Errors
     /// The first field that is out of range.
     pub fn new(config: StreamConfig) -> Result<Self, ConfigError> {
-        let front_end = FrontEnd::new(config.front_end)?;
-        config.sensors.check()?;
-        crate::error::require(config.movement_memory > 0, "movement_memory", "at least 1 sample")?;
-        Ok(Self {
-            front_end,
-            assessor: Assessor::new(&front_end, config.sensors),
-            contact_loss: config.contact_loss,
-            four_counts: 4.0 * config.sensors.position_resolution / config.front_end.units.penetration,
-            movement_decay: core::f32::consts::LN_2 / f32::from(config.movement_memory),
+        Ok(Self::of(Checked::of(config)?))
+    }
+
+    /// It cannot fail, so that who holds a large one can have it made where it is to be.
+    pub(crate) fn of(checked: Checked) -> Self {
+        Self {
+            front_end: checked.front_end,
+            assessor: checked.assessor,
+            contact_loss: checked.contact_loss,
+            four_counts: checked.four_counts,
+            movement_decay: checked.movement_decay,
             state: FrontEndState::default(),
             window: Window::new(),
             in_contact: false,
             low: 0.0,
             high: 0.0,
-        })
+        }
     }
 
     /// Takes one sample.
@@ -128,6 +155,21 @@ impl<const N: usize> Stream<N> {
         self.high - self.low
     }
 
+    /// Takes other settings in place, and forgets everything.
+    pub(crate) fn configure(&mut self, checked: Checked) {
+        (self.front_end, self.assessor, self.contact_loss) =
+            (checked.front_end, checked.assessor, checked.contact_loss);
+        (self.four_counts, self.movement_decay) = (checked.four_counts, checked.movement_decay);
+        self.restart();
+    }
+
+    /// Forgets everything but the settings: the next sample is the first.
+    pub fn restart(&mut self) {
+        self.state = FrontEndState::default();
+        self.window.clear();
+        self.in_contact = false;
+    }
+
     /// The latest observations of the contact.
     pub fn recent(&self) -> Recent<'_> {
         self.window.recent()
@@ -151,6 +193,12 @@ impl<L: Law> Tracker<L> {
     /// At the start.
     pub fn new(law: L) -> Self {
         Self { state: law.start(), law, last: Estimate::UNKNOWN }
+    }
+
+    /// Forgets what has been learnt.
+    pub fn restart(&mut self) {
+        self.state = self.law.start();
+        self.last = Estimate::UNKNOWN;
     }
 
     /// What has been learnt.

@@ -4,10 +4,12 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::calibrate::{self, CalibrateArgs};
 use crate::catalogue::{self, EffectsArgs};
 use crate::challenge::{self, ChallengeArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
+use crate::listen::{self, ListenArgs};
 use crate::profile::{self, ProfileArgs};
 use crate::replay::{self, ReplayArgs};
 use crate::reproduce::{self, ReproduceArgs};
@@ -35,6 +37,10 @@ enum Command {
     Profile(ProfileArgs),
     /// Put the diagnosis to recordings whose missing physics is concealed from it
     Challenge(ChallengeArgs),
+    /// Show what a drive feels, record it, and send it commands
+    Listen(ListenArgs),
+    /// Make the calibration block that a drive reads from its flash
+    Calibrate(CalibrateArgs),
     /// List the physics that it knows beyond spring and damper
     Effects(EffectsArgs),
 }
@@ -49,6 +55,8 @@ pub fn run() -> ExitCode {
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Profile(args) => profile::run(&args),
         Command::Challenge(args) => challenge::run(&args),
+        Command::Listen(args) => listen::run(&args),
+        Command::Calibrate(args) => calibrate::run(&args),
         Command::Effects(args) => catalogue::run(&args),
     };
     match done {

@@ -1,5 +1,6 @@
 //! The host tool of palpate, as a library so that its binaries and tests share it.
 
+pub mod calibrate;
 pub mod catalogue;
 pub mod challenge;
 pub mod cli;
@@ -7,7 +8,9 @@ pub mod demo;
 pub mod device;
 pub mod diagnose;
 pub mod effects;
+pub mod emulated;
 pub mod error;
+pub mod listen;
 pub mod outfile;
 pub mod page;
 pub mod plant;

@@ -7,6 +7,7 @@ mod cycles;
 mod emulator;
 mod figures;
 mod image;
+mod interrupt;
 mod listing;
 mod table;
 mod trial;
@@ -20,6 +21,7 @@ use serde::Serialize;
 
 pub use budget::{Cost, kept as kept_costs};
 pub use figures::Figures;
+pub use interrupt::{InterruptCost, interrupt_costs};
 
 use crate::device;
 use crate::outfile::OutFile;
@@ -128,12 +130,30 @@ pub fn panics_reached_from(image: &Path, entry: &str) -> Result<Vec<String>> {
     Ok(panics.chain(calls.blind(start)).map(|function| function.name.clone()).collect())
 }
 
+/// Bytes of stack of the deepest way from the function `entry` of an image, or of all its functions where that cannot be told.
+///
+/// # Errors
+/// The image cannot be read, or has no such function.
+pub fn stack_from(image: &Path, entry: &str) -> Result<u32> {
+    let image = Image::read(image)?;
+    let (calls, start) = (Calls::of(&image), image.label(entry)?);
+    Ok(calls.stack(start).unwrap_or_else(|| calls.frames(start)))
+}
+
 /// The image that runs the estimators from the interrupt, built.
 ///
 /// # Errors
 /// It does not build.
 pub fn interrupt_image() -> Result<PathBuf> {
     device::build("palpate", "replay")
+}
+
+/// The image of a drive, built.
+///
+/// # Errors
+/// It does not build.
+pub fn drive_image() -> Result<PathBuf> {
+    device::build("palpate", "drive")
 }
 
 /// Runs `palpate profile`.

@@ -56,6 +56,12 @@ impl<'a> Calls<'a> {
         self.deepest(start, &mut Vec::new())
     }
 
+    /// Bytes of stack of all functions that are reached from `start`, one after the other: a bound where the deepest way cannot be
+    /// told, for a constant among the code may read as a call that closes a ring.
+    pub fn frames(&self, start: u32) -> u32 {
+        self.reached(start).iter().map(|function| self.frame(function.start)).sum()
+    }
+
     fn deepest(&self, start: u32, above: &mut Vec<u32>) -> Option<u32> {
         if above.contains(&start) {
             return None;

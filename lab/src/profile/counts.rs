@@ -95,9 +95,9 @@ fn read_clock(text: &str) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-type Counted = (Vec<Pass>, BTreeMap<u32, u64>);
+pub(super) type Counted = (Vec<Pass>, BTreeMap<u32, u64>);
 
-fn read_plugin(text: &str) -> Result<Vec<Counted>> {
+pub(super) fn read_plugin(text: &str) -> Result<Vec<Counted>> {
     let mut cases: Vec<Counted> = Vec::new();
     for line in text.lines() {
         let words: Vec<&str> = line.split(' ').collect();

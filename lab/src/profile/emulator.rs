@@ -25,13 +25,7 @@ impl Emulator {
     /// # Errors
     /// The plugin does not build, or the disk is full.
     pub fn prepare(qemu: PathBuf) -> Result<Self> {
-        let library = |message: &serde_json::Value| {
-            let files = message["filenames"].as_array()?.iter().filter_map(|file| file.as_str());
-            files
-                .map(PathBuf::from)
-                .find(|file| file.extension().is_some_and(|e| e == "so" || e == "dylib" || e == "dll"))
-        };
-        let counter = device::cargo(&["--package", "palpate-counter"], "palpate_counter", library)?;
+        let counter = counter()?;
         let folder = tempfile::tempdir().context("cannot make a folder for the image's files")?;
         let mut buffer = [0; CONFIG_BYTES + 4];
         let mut input = encode_config(&trial::config(), &mut buffer).context("the settings do not fit")?.to_vec();
@@ -88,9 +82,18 @@ impl Emulator {
     }
 }
 
+/// Builds the plugin.
+pub(super) fn counter() -> Result<PathBuf> {
+    let library = |message: &serde_json::Value| {
+        let files = message["filenames"].as_array()?.iter().filter_map(|file| file.as_str());
+        files.map(PathBuf::from).find(|file| file.extension().is_some_and(|e| e == "so" || e == "dylib" || e == "dll"))
+    };
+    device::cargo(&["--package", "palpate-counter"], "palpate_counter", library)
+}
+
 /// One line an instruction: address, bytes, least and most cycles, saved behind an access, an access itself, registers read
 /// and written late.
-fn table(image: &Image) -> String {
+pub(super) fn table(image: &Image) -> String {
     let mut text = String::new();
     for (address, instruction) in &image.code {
         let c = cost(instruction);

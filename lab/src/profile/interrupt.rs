@@ -1,0 +1,142 @@
+//! What a tick of the drive's interrupt costs, by the plugin, from the vector to the return.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, Result, ensure};
+use palpate::Method;
+use palpate::drive::link::{Command, Message, Source, Streams};
+use palpate::drive::{Calibration, Input, Settings};
+
+use super::counts::read_plugin;
+use super::emulator::{counter, table};
+use super::image::Image;
+use crate::device;
+use crate::emulated::{DriveImage, Emulated, Pace};
+use crate::listen::{Client, inputs};
+use crate::recording::Recording;
+use crate::rig::Rig;
+use crate::simulate;
+use crate::tools::Leave;
+
+/// What ticks cost.
+#[derive(Debug, Clone)]
+pub struct InterruptCost {
+    /// What went on.
+    pub what: String,
+    /// Ticks that were counted.
+    pub ticks: usize,
+    /// Instructions of the longest, those of the serial line's interrupt within it among them.
+    pub most: u32,
+    /// Its modelled cycles, least and most.
+    pub cycles: [u32; 2],
+}
+
+/// Counts the ticks of a drive without sensors and of one that is fed a contact with losses and onsets, and with every
+/// fourth word upset.
+///
+/// # Errors
+/// A tool is missing, or the drive fails.
+pub fn interrupt_costs() -> Result<Vec<InterruptCost>> {
+    let drive = DriveImage::prepare(Leave::Look)?;
+    let image = Image::read(&drive.path)?;
+    let sound = trial()?;
+    let upset: Vec<Input> = sound
+        .iter()
+        .enumerate()
+        .map(|(k, &input)| match k % 16 {
+            3 => Input { angle: input.angle ^ 1, ..input },
+            7 => Input { force: u32::MAX, ..input },
+            11 => Input { elapsed: 60, ..input },
+            15 => Input { angle: input.angle ^ 0x0c00, ..input },
+            _ => input,
+        })
+        .collect();
+    let gauge = Gauge { drive, image, counter: counter()? };
+    let mut costs = vec![gauge.measure("without sensors", None, &[])?];
+    costs.push(gauge.measure(
+        "other settings are taken",
+        Some(Settings { window: 299, ..Settings::default() }),
+        &sound,
+    )?);
+    for (what, words) in [("bls, a contact", &sound), ("bls, faults", &upset)] {
+        costs.push(gauge.measure(what, Some(Settings::default()), words)?);
+    }
+    // Of the laws blmf takes longest; taking it over is in the figure.
+    let longest = Settings { method: Method::Blmf, ..Settings::default() };
+    costs.push(gauge.measure("blmf, taken over, faults", Some(longest), &upset)?);
+    Ok(costs)
+}
+
+/// Four seconds of the bench: two onsets and two losses.
+fn trial() -> Result<Vec<Input>> {
+    let mut rig = Rig::read(&device::project()?.join("lab/rigs/bench.toml"))?;
+    rig.simulation.duration_s = 4.0;
+    if let Some(reference) = &mut rig.reference {
+        (reference.period_s, reference.contact_s) = (2.0, 1.2);
+    }
+    let recording: Recording = simulate::simulate(&rig, 3, "bench.toml")?.recording;
+    let calibration = Calibration::DEFAULT;
+    Ok(inputs(&recording, &rig, &calibration, &calibration.scale()))
+}
+
+struct Gauge {
+    drive: DriveImage,
+    image: Image,
+    counter: PathBuf,
+}
+
+impl Gauge {
+    fn measure(&self, what: &str, settings: Option<Settings>, words: &[Input]) -> Result<InterruptCost> {
+        let folder = tempfile::tempdir().context("cannot make a folder for the counts")?;
+        let (costs, counts) = (folder.path().join("costs"), folder.path().join("counts"));
+        std::fs::write(&costs, table(&self.image)).context("cannot write the costs")?;
+        let plugin = format!(
+            "{},begin={},end={},case={},costs={},out={}",
+            self.counter.display(),
+            self.image.label("palpate_begin")?,
+            self.image.label("palpate_end")?,
+            self.image.label("main")?,
+            costs.display(),
+            counts.display()
+        );
+        let running = self.drive.start(Pace::Exact, None, &["-plugin", &plugin])?;
+        let mut client = running.client()?;
+        run(&mut client, settings, words)?;
+        finish(running, what, &counts)
+    }
+}
+
+fn run(client: &mut Client, settings: Option<Settings>, words: &[Input]) -> Result<()> {
+    client.about()?;
+    let Some(settings) = settings else {
+        std::thread::sleep(Duration::from_secs(1));
+        return Ok(());
+    };
+    if settings != Settings::default() {
+        client.demand(Command::Choose(settings), "the settings")?;
+    }
+    client.demand(Command::Source(Source::Link), "the test mode")?;
+    client.demand(Command::Stream(Streams { estimates: 0, samples: true }), "the streams")?;
+    let (mut rest, mut back, since) = (words, 0, Instant::now());
+    while back < words.len() {
+        let mut take = |message: Message<'_>| back += usize::from(matches!(message, Message::Sample(_)));
+        if rest.is_empty() {
+            client.poll(&mut take)?;
+        } else {
+            rest = client.feed(rest, &mut take)?;
+        }
+        ensure!(since.elapsed() < Duration::from_secs(120), "{back} of {} came back", words.len());
+    }
+    Ok(())
+}
+
+fn finish(running: Emulated, what: &str, counts: &std::path::Path) -> Result<InterruptCost> {
+    running.quit()?;
+    let text = std::fs::read_to_string(counts).context("the plugin wrote no counts")?;
+    let cases = read_plugin(&text)?;
+    let passes = cases.iter().flat_map(|(passes, _)| passes);
+    let ticks = passes.clone().count();
+    let most = passes.max_by_key(|pass| pass.instructions).context("no tick was counted")?;
+    Ok(InterruptCost { what: what.to_owned(), ticks, most: most.instructions, cycles: most.cycles })
+}
