@@ -25,25 +25,25 @@ pub struct Calibration {
     pub position_sensor: PositionSensor,
     /// Counts of a turn of the encoder: 16384, or four times the lines of a quadrature encoder.
     pub counts_per_turn: u32,
-    /// The transmission: way of the tool in a turn of the encoder, negative where they run against each other [m].
+    /// The transmission: way of the tool in a turn of the encoder, negative where they run against each other, m.
     pub travel_per_turn: f32,
     /// Reading of the absolute encoder in the middle of the travel, so that the travel does not cross its seam.
     pub centre: u16,
     /// Counts from `centre` (from power-on with a quadrature encoder) at which contact begins.
     pub surface: i32,
-    /// Positions that can be, from the surface [m]: first and last.
+    /// Positions that can be, from the surface, m: first and last.
     pub travel: [f32; 2],
     /// Fastest way the tool can go [m/s].
     pub max_speed: f32,
-    /// Force of one count, negative where a push lowers the count [N].
+    /// Force of one count, negative where a push lowers the count, N.
     pub force_gain: f32,
     /// Count of the converter without any force, from zero volt.
     pub force_zero: f32,
-    /// Largest force that the sensor is calibrated for [N].
+    /// Largest force that the sensor is calibrated for, N.
     pub force_limit: f32,
-    /// Standard deviation of the measured force, the converter's rounding included [N].
+    /// Standard deviation of the measured force, the converter's rounding included, N.
     pub force_noise: f32,
-    /// Furthest that a tare may move the zero [N].
+    /// Furthest that a tare may move the zero, N.
     pub tare_limit: f32,
     /// Span of the converter's input.
     pub range: Range,
@@ -162,7 +162,7 @@ impl Calibration {
         require_not_negative(self.tare_limit, "tare_limit")
     }
 
-    /// Way of the tool in one count of the encoder, signed [m].
+    /// Way of the tool in one count of the encoder, signed, m.
     pub fn position_per_count(&self) -> f32 {
         self.travel_per_turn / self.counts_per_turn as f32
     }
@@ -196,21 +196,21 @@ impl Calibration {
 /// Counts to SI, by single-precision multiplications that a host repeats to the bit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scale {
-    /// Of one count of the encoder [m].
+    /// Of one count of the encoder, m.
     pub position: f32,
-    /// Of one count of the converter [N].
+    /// Of one count of the converter, N.
     pub force: f32,
     /// Counts without force.
     pub zero: f32,
 }
 
 impl Scale {
-    /// Position from the surface [m].
+    /// Position from the surface, m.
     pub fn position(&self, depth: i32) -> f32 {
         depth as f32 * self.position
     }
 
-    /// Force [N].
+    /// Force, N.
     pub fn force(&self, code: i32) -> f32 {
         (code as f32 - self.zero) * self.force
     }

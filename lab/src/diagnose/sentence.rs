@@ -84,9 +84,9 @@ pub fn on_drive(name: &str) -> Option<&'static str> {
         "force_bias" => Some(
             "ParameterRls with ContactModel::BiasedKelvinVoigt follows K, B and the bias: regressor 1; or tare before touching",
         ),
-        "time_varying_stiffness" => Some(
-            "CusumRls follows a stiffness that jumps, AdaptiveWindow one that drifts: regressors x and v",
-        ),
+        "time_varying_stiffness" => {
+            Some("CusumRls follows a stiffness that jumps, AdaptiveWindow one that drifts: regressors x and v")
+        }
         _ => None,
     }
 }
