@@ -114,14 +114,26 @@ fn difference(picture: &Picture) -> Vec<f64> {
     picture.recorded.iter().zip(&picture.simulated).map(|(recorded, simulated)| recorded - simulated).collect()
 }
 
+/// Between what all but a few values lie: a row at the very touch is no measure for the rest.
+fn most(mut values: Vec<f64>) -> (f64, f64) {
+    values.sort_by(f64::total_cmp);
+    let cut = values.len() / 100;
+    match (values.get(cut), values.get(values.len().saturating_sub(1 + cut))) {
+        (Some(low), Some(high)) => {
+            let room = 0.15 * (high - low);
+            (low - room, high + room)
+        }
+        _ => (0.0, 1.0),
+    }
+}
+
 /// Points for what is recorded, a line for all else, over time.
 fn panel(title: &str, unit: &str, time: &[f64], series: &[(&str, &Vec<f64>)]) -> Markup {
-    let all = || series.iter().flat_map(|(_, values)| values.iter().copied());
-    let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    let (low, high) = most(series.iter().flat_map(|(_, values)| values.iter().copied()).collect());
     let span = (high - low).max(f64::MIN_POSITIVE);
     let (start, end) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(1.0));
     let x = |t: f64| 1000.0 * (t - start) / (end - start).max(f64::MIN_POSITIVE);
-    let y = |v: f64| 195.0 - 190.0 * (v - low) / span;
+    let y = |v: f64| 195.0 - 190.0 * (v.clamp(low, high) - low) / span;
     let path = |name: &str, values: &[f64]| {
         let points = time.iter().zip(values).map(|(t, v)| (x(*t), y(*v)));
         points.enumerate().fold(String::new(), |mut text, (at, (x, y))| {
