@@ -7,7 +7,7 @@ use palpate_cases::truth::Kind;
 use palpate_cases::{Source, What, Wish, draw};
 
 use super::super::row::Row;
-use super::super::score::Challenge;
+use super::super::score::{Challenge, median};
 use crate::diagnose::answer::Trace;
 use crate::diagnose::diagnose;
 use crate::recording::Recording;
@@ -15,6 +15,9 @@ use crate::rig::Rig;
 
 /// Rows of the picture.
 const ROWS: usize = 900;
+
+/// Deviation of normal noise over the median of its absolute value: rows at the very touch do not count.
+const NORMAL: f64 = 1.4826;
 
 /// What is drawn, row by row.
 struct Picture {
@@ -80,12 +83,12 @@ fn picture(row: &Row) -> Option<Picture> {
     let recorded: Vec<f64> = rows.iter().map(|row| raw[nearest(trace.time[*row])]).collect();
     let simulated: Vec<f64> = rows.iter().map(|row| f64::from(trace.refitted[*row])).collect();
     let changes: Vec<f64> = change(trace).collect();
-    let apart: f64 = recorded.iter().zip(&simulated).map(|(r, s)| (r - s) * (r - s)).sum();
+    let apart = median(recorded.iter().zip(&simulated).map(|(recorded, simulated)| (recorded - simulated).abs()));
     Some(Picture {
         unit: found.pictures.force_unit,
         time: rows.iter().map(|row| trace.time[*row]).collect(),
         effect: rows.iter().map(|row| changes[*row]).collect(),
-        deviation: (apart / recorded.len().max(1) as f64).sqrt(),
+        deviation: NORMAL * apart,
         recorded,
         simulated,
         named: found.answer.summary.clone(),
