@@ -5,10 +5,12 @@
 //! opened and the answers are scored. The generator of the cases shares no code of an effect with the diagnosis, and half of
 //! the whole list is played by simulators that nobody here wrote.
 
+pub mod aim;
 pub mod bic;
 mod command;
 pub mod draft;
 pub mod examination;
+pub mod files;
 pub mod interval;
 pub mod page;
 pub mod plan;

@@ -11,6 +11,7 @@ use anyhow::Result;
 use palpate_cases::rivals::Finding;
 use rayon::prelude::*;
 
+use super::files::{self, Files};
 use crate::diagnose::fit::{self, Data};
 use crate::diagnose::fold;
 use crate::diagnose::model::Model;
@@ -18,8 +19,6 @@ use crate::diagnose::score::Remainder;
 use crate::diagnose::study::Study;
 use crate::diagnose::whiten::Whitener;
 use crate::diagnose::{sensed, study};
-use crate::recording::Recording;
-use crate::rig::Rig;
 
 /// Candidates of a round that are fitted in full.
 const FITTED: usize = 8;
@@ -33,10 +32,7 @@ const MOST_EFFECTS: usize = 4;
 /// Files at fault.
 pub fn answer(folder: &Path) -> Result<Finding> {
     let start = Instant::now();
-    let path = folder.join("rig.toml");
-    let (rig, origin) = (Rig::read(&path)?, path.display().to_string());
-    let read = |number| Recording::read(&folder.join(format!("trial-{number}.csv")), &rig);
-    let trials = [1, 2].map(read).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let Files { rig, origin, trials } = files::read(folder)?;
     let study = study(&rig, &origin, sensed(&rig, &origin, &trials)?, 1)?;
     let whitener = study.even_floors();
     let first = study.first_fit();

@@ -12,6 +12,7 @@ use maud::{Markup, html};
 use palpate_cases::Source;
 use palpate_cases::truth::Kind;
 
+use super::aim::{Aim, aims, beside};
 use super::interval::of_share;
 use super::row::Row;
 use super::score::Challenge;
@@ -27,7 +28,7 @@ pub fn write(challenge: &Challenge, out: &mut impl Write) -> io::Result<()> {
     shell::open("palpate challenge", STYLE, out)?;
     let body = html! {
         (opening(challenge))
-        (aims(challenge))
+        (table(challenge))
         (power::section(challenge))
         (concealed::section(challenge))
         (rivals::section(challenge))
@@ -53,7 +54,7 @@ fn opening(challenge: &Challenge) -> Markup {
 }
 
 fn headline(challenge: &Challenge) -> String {
-    let large: Vec<&Row> = select(challenge, |row| row.kind == Kind::Single && row.strength >= 1.0);
+    let large: Vec<&Row> = select(challenge, Row::is_large);
     let right = large.iter().filter(|row| row.is_right()).count();
     let mut parts = Vec::new();
     if challenge.none.n > 0 {
@@ -71,78 +72,20 @@ fn select(challenge: &Challenge, is: impl Fn(&Row) -> bool) -> Vec<&Row> {
     challenge.rows.iter().filter(|row| is(row)).collect()
 }
 
-/// A line of the table of aims: what, hits, of, aim in words, the aim as a share.
-struct Aim<'a> {
-    what: &'a str,
-    hits: usize,
-    of: usize,
-    aim: &'a str,
-    least: Option<f64>,
-}
-
-fn aims(challenge: &Challenge) -> Markup {
-    let line = |what, rows: Vec<&Row>, is: &dyn Fn(&Row) -> bool, aim, least| Aim {
-        what,
-        hits: rows.iter().filter(|row| is(row)).count(),
-        of: rows.len(),
-        aim,
-        least,
-    };
-    let single = |row: &Row| row.kind == Kind::Single;
-    let large = |row: &Row| single(row) && row.strength >= 1.0;
-    let third = |row: &Row| single(row) && (0.2..0.45).contains(&row.strength);
-    let none = select(challenge, |row| row.kind == Kind::None);
-    let pairs = select(challenge, |row| row.kind == Kind::Pair);
-    let outside = select(challenge, |row| row.kind == Kind::Outside);
-    let values: Vec<_> = challenge.rows.iter().flat_map(|row| &row.values).collect();
-    let covered = values.iter().filter(|value| value.covered).count();
-    let lines = [
-        line("Nothing missing: left alone", none, &|row| !row.is_false_alarm(), "99 %", Some(0.99)),
-        line(
-            "One effect, at least as large as the floor: named rightly",
-            select(challenge, large),
-            &Row::is_right,
-            "95 %",
-            Some(0.95),
-        ),
-        line("The same, truth within answer and rivals", select(challenge, large), &Row::is_within, "95 %", Some(0.95)),
-        line(
-            "One effect of 0.2 to 0.45 of the floor: detected",
-            select(challenge, third),
-            &Row::is_detected,
-            "50 %",
-            Some(0.5),
-        ),
-        line("One effect of any strength: named rightly", select(challenge, single), &Row::is_right, "", None),
-        line("Two effects: both named and nothing else", pairs, &Row::is_right, "85 %", Some(0.85)),
-        line("Outside the list: called unknown", outside, &Row::is_owned, "95 %", Some(0.95)),
-        Aim {
-            what: "Intervals of parameters that hold the truth",
-            hits: covered,
-            of: values.len(),
-            aim: "90 to 97 %",
-            least: Some(0.9),
-        },
-    ];
+fn table(challenge: &Challenge) -> Markup {
     html! {
         section {
             h2 { "What was aimed at, and what came out" }
             div.wide { table.aims {
                 thead { tr { th { "concealed" } th { "hits" } th { "of" } th { "share" } th { "95 % interval" } th { "aim" } th {} } }
-                tbody { @for line in lines.iter().filter(|line| line.of > 0) { (row_of(line)) } }
+                tbody { @for line in aims(challenge).iter().filter(|line| line.of > 0) { (row_of(line)) } }
             } }
-            p.fine {
-                "Names offered where something was detected: " (format!("{:.2}", challenge.single.mean_set_size)) " in the mean (aim 1.5). \
-                 Parameters: median error " (format!("{:.1}", 100.0 * challenge.parameters.median_error)) " % (aim 5 %). Held-out residual over the \
-                 floor where rightly named, medians: " (format!("{:.2}", challenge.residual_over_floor.before_median)) " before, "
-                (format!("{:.2}", challenge.residual_over_floor.after_median)) " after (aim 1.2). A diagnosis took "
-                (format!("{:.1}", challenge.seconds_median)) " s (median)."
-            }
+            p.fine { (beside(challenge)) }
         }
     }
 }
 
-fn row_of(line: &Aim<'_>) -> Markup {
+fn row_of(line: &Aim) -> Markup {
     let [low, high] = of_share(line.hits, line.of);
     let share = line.hits as f64 / line.of as f64;
     let told = line.least.map(|least| match () {
@@ -181,7 +124,7 @@ fn sources(challenge: &Challenge) -> Markup {
                     @if !rows.is_empty() { tr {
                         th { (title(source)) } td { (rows.len()) }
                         td { (cell(&rows, &|row| row.kind == Kind::None, &|row| !row.is_false_alarm())) }
-                        td { (cell(&rows, &|row| row.kind == Kind::Single && row.strength >= 1.0, &Row::is_right)) }
+                        td { (cell(&rows, &Row::is_large, &Row::is_right)) }
                         td { (cell(&rows, &|row| row.kind == Kind::Pair, &Row::is_right)) }
                         td { (cell(&rows, &|row| row.kind == Kind::Outside, &Row::is_owned)) }
                     } }

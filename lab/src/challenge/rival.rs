@@ -91,7 +91,7 @@ pub fn standings(rows: &[Row]) -> Vec<Standing> {
 
 fn standing(who: &str, looked: &[(&Row, Other)]) -> Standing {
     let none: Vec<_> = looked.iter().filter(|(row, _)| row.kind == Kind::None).collect();
-    let large: Vec<_> = looked.iter().filter(|(row, _)| row.kind == Kind::Single && row.strength >= 1.0).collect();
+    let large: Vec<_> = looked.iter().filter(|(row, _)| row.is_large()).collect();
     let right = |(row, other): &&&(&Row, Other)| row.truth.iter().eq(&other.named);
     Standing {
         who: who.to_owned(),

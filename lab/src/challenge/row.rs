@@ -125,6 +125,12 @@ impl Row {
         row
     }
 
+    /// One effect of the list, at least as large as the floor.
+    #[must_use]
+    pub fn is_large(&self) -> bool {
+        self.kind == Kind::Single && self.strength >= 1.0
+    }
+
     /// Physics named, or owned as unknown.
     #[must_use]
     pub fn is_detected(&self) -> bool {

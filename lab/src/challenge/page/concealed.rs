@@ -6,12 +6,11 @@ use maud::{Markup, html};
 use palpate_cases::truth::Kind;
 use palpate_cases::{Source, What, Wish, draw};
 
+use super::super::files::{self, Files};
 use super::super::row::Row;
 use super::super::score::{Challenge, median};
 use crate::diagnose::answer::Trace;
 use crate::diagnose::diagnose;
-use crate::recording::Recording;
-use crate::rig::Rig;
 
 /// Rows of the picture.
 const ROWS: usize = 900;
@@ -66,11 +65,8 @@ fn picture(row: &Row) -> Option<Picture> {
     let case = draw(row.seed, row.index, &Wish { what: Some(what), ..Wish::default() }).ok()?;
     let folder = tempfile::tempdir().ok()?;
     case.write(folder.path()).ok()?;
-    let path = folder.path().join("rig.toml");
-    let rig = Rig::read(&path).ok()?;
-    let read = |number| Recording::read(&folder.path().join(format!("trial-{number}.csv")), &rig);
-    let trials = (1..=case.trials.len()).map(read).collect::<Result<Vec<_>, _>>().ok()?;
-    let found = diagnose(&rig, &path.display().to_string(), &trials, &[], 1, &|_| ()).ok()?;
+    let Files { rig, origin, trials } = files::read(folder.path()).ok()?;
+    let found = diagnose(&rig, &origin, &trials, &[], 1, &|_| ()).ok()?;
     let traces = found.pictures.traces.iter();
     let size = |trace: &Trace| change(trace).map(|c| c * c).sum::<f64>() / trace.time.len().max(1) as f64;
     let trace = traces.max_by(|a, b| size(a).total_cmp(&size(b)))?;
