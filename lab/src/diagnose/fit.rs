@@ -1,6 +1,6 @@
 //! Bounded nonlinear least squares of a model's values on whitened residuals: Levenberg and Marquardt's method.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
 use super::model::{Channels, Model, Rest, Term, index};
 use super::track::Trial;
@@ -40,7 +40,7 @@ impl Data<'_> {
 /// Sum of squares.
 #[must_use]
 pub fn energy(values: &[f64]) -> f64 {
-    values.iter().map(|value| value * value).sum()
+    dot(values, values)
 }
 
 /// How one value of a model may move.
@@ -322,5 +322,5 @@ fn clamp(values: &mut [f64], axes: &[Axis]) {
 /// Inner product.
 #[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    DVectorView::from_slice(a, a.len()).dot(&DVectorView::from_slice(b, b.len()))
 }

@@ -7,6 +7,7 @@
 //! the sensors are better than the rows one can afford, the Gaussian is passed in two: the law acts on the motion behind
 //! the first, and what it leaves passes the second.
 
+use super::fit::dot;
 use super::raw::Raw;
 use crate::rig::Rig;
 
@@ -238,7 +239,7 @@ impl Lens {
                 let from = at as isize - reach;
                 if from >= 0 && at as isize + reach <= last {
                     let piece = &values[from as usize..from as usize + kernel.len()];
-                    return kernel.iter().zip(piece).map(|(tap, value)| tap * value).sum();
+                    return dot(kernel, piece);
                 }
                 // Beyond the ends the course is taken to go on as its end stands.
                 let value = |offset: usize| values[(from + offset as isize).clamp(0, last) as usize];

@@ -218,7 +218,13 @@ pub fn solve(directions: &[(usize, Vec<f64>)], target: &[f64]) -> Option<DVector
     }
     // Directions differ in size by their units: each is taken as long as one.
     let sizes: Vec<f64> = directions.iter().map(|(_, d)| dot(d, d).sqrt().max(f64::MIN_POSITIVE)).collect();
-    let mut normal = DMatrix::from_fn(n, n, |i, j| dot(&directions[i].1, &directions[j].1) / (sizes[i] * sizes[j]));
+    let mut normal = DMatrix::zeros(n, n);
+    for i in 0..n {
+        for j in 0..=i {
+            let value = dot(&directions[i].1, &directions[j].1) / (sizes[i] * sizes[j]);
+            (normal[(i, j)], normal[(j, i)]) = (value, value);
+        }
+    }
     let right = DVector::from_fn(n, |i, _| dot(&directions[i].1, target) / sizes[i]);
     (0..n).for_each(|i| normal[(i, i)] += 1e-9);
     normal

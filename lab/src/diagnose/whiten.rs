@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit;
+use super::fit::{self, dot};
 use super::model::Rest;
 use super::track::{Track, Trial};
 
@@ -130,15 +130,16 @@ impl Floor {
         self.scale = (energy * size).max(f64::MIN_POSITIVE).sqrt();
     }
 
-    /// Whitened value of row `at`, all of the rows before it within the order being there.
-    fn white(&self, trial: usize, values: &[f64], at: usize) -> f64 {
-        let deviation = &self.deviation[trial];
-        let mut sum = values[at] / deviation[at];
-        for (lag, weight) in self.predictor.iter().enumerate() {
-            let before = at - 1 - lag;
-            sum -= weight * values[before] / deviation[before];
-        }
-        sum / self.scale
+    /// Whitened `values` of a trial, on those rows that count: before each of them all rows are there that the predictor
+    /// asks for.
+    fn white<'a>(&'a self, trial: usize, values: &[f64]) -> impl Iterator<Item = f64> + use<'a> {
+        let scaled: Vec<f64> = values.iter().zip(&self.deviation[trial]).map(|(v, d)| v / d).collect();
+        let backwards: Vec<f64> = self.predictor.iter().rev().copied().collect();
+        let ahead = move |at: &usize| {
+            let expected = dot(&backwards, &scaled[at - backwards.len()..*at]);
+            (scaled[*at] - expected) / self.scale
+        };
+        self.rows[trial].iter().map(ahead)
     }
 }
 
@@ -242,7 +243,7 @@ impl Whitener {
                 if values.is_empty() {
                     out.extend(std::iter::repeat_n(0.0, rows.len()));
                 } else {
-                    out.extend(rows.iter().map(|&at| floor.white(trial, values, at)));
+                    out.extend(floor.white(trial, values));
                 }
             }
         };

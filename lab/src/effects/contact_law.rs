@@ -26,6 +26,7 @@ impl Active<'_> {
 #[derive(Clone, Copy)]
 struct Term<'a> {
     active: Active<'a>,
+    stage: Stage,
     memory: Memory,
     kept: Memory,
 }
@@ -53,9 +54,14 @@ impl<'a> Along<'a> {
         let mut terms: Vec<_> = actives
             .iter()
             .filter(|active| active.effect.card().place == Place::Contact)
-            .map(|active| Term { active: *active, memory: Memory::default(), kept: Memory::default() })
+            .map(|active| Term {
+                active: *active,
+                stage: active.stage(),
+                memory: Memory::default(),
+                kept: Memory::default(),
+            })
             .collect();
-        terms.sort_by_key(|term| term.active.stage());
+        terms.sort_by_key(|term| term.stage);
         Self { contact, terms, borne: 0.0, kept: 0.0 }
     }
 
@@ -102,7 +108,7 @@ impl<'a> Along<'a> {
         };
         let mut terms = self.terms.iter_mut().peekable();
         let mut act = |last: Stage, touch: &mut Touch| {
-            while let Some(term) = terms.next_if(|term| term.active.stage() <= last) {
+            while let Some(term) = terms.next_if(|term| term.stage <= last) {
                 term.active.effect.touch(term.active.form, term.active.values, &mut term.memory, touch);
             }
         };

@@ -44,7 +44,7 @@ impl Push {
     /// Mean of the sign of the velocity over the blur, and over what noise leaves undecided.
     #[must_use]
     pub fn direction(&self) -> f64 {
-        let width = (self.acceleration * self.blur).hypot(self.speed_noise);
+        let width = ((self.acceleration * self.blur).powi(2) + self.speed_noise.powi(2)).sqrt();
         if self.velocity.abs() >= 6.0 * width {
             return if self.velocity == 0.0 { 0.0 } else { self.velocity.signum() };
         }

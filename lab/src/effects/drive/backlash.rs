@@ -65,21 +65,22 @@ impl Link {
             *memory = [push.position + lead, push.velocity, push.position, push.velocity, push.effort, 1.0];
         }
         let [mut motor, mut speed, tool, tool_speed, effort, _] = *memory;
-        let span = push.step / steps.max(1.0);
+        let part = steps.max(1.0).recip();
+        let span = push.step * part;
+        let lightness = span / self.inertia;
         let mix = |from: f64, to: f64, part: f64| from + part * (to - from);
         // The tool between two samples, by position and rate at both: a chord would leave k step^2 / 12 of false inertia.
-        let way = |part: f64| {
-            let left = 1.0 - part;
-            mix(tool, push.position, part * part * (3.0 - 2.0 * part))
-                + push.step * part * left * (left * tool_speed - part * push.velocity)
-        };
+        let (chord, first, last) = (push.position - tool, push.step * tool_speed, push.step * push.velocity);
+        let (square, cube) = (3.0 * chord - 2.0 * first - last, first + last - 2.0 * chord);
+        let way = |part: f64| tool + part * (first + part * (square + part * cube));
         for step in 0..steps as usize {
-            let (start, middle) = (step as f64 / steps, (step as f64 + 0.5) / steps);
+            let start = step as f64 * part;
+            let middle = start + 0.5 * part;
             // Half the way, the force there, the other half: motor and tool are compared at one instant, or a common
             // motion would be pushed on by k span / 2 times its speed.
             motor += 0.5 * span * speed;
             let pull = self.pull(motor - way(middle), speed - mix(tool_speed, push.velocity, start));
-            speed += span * (mix(effort, push.effort, middle) - pull) / self.inertia;
+            speed += lightness * (mix(effort, push.effort, middle) - pull);
             motor += 0.5 * span * speed;
         }
         *memory = [motor, speed, push.position, push.velocity, push.effort, 1.0];

@@ -50,7 +50,7 @@ impl Effect for StribeckFriction {
     fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
         let speed = values[2].max(f64::MIN_POSITIVE);
         // Within the blur the speed is spread by the acceleration: the mean of a Gaussian over a Gaussian.
-        let spread = (push.acceleration * push.blur).hypot(push.speed_noise);
+        let spread = ((push.acceleration * push.blur).powi(2) + push.speed_noise.powi(2)).sqrt();
         let wide = (speed * speed + 2.0 * spread * spread).sqrt();
         let excess = values[1] * speed / wide * (-(push.velocity / wide).powi(2)).exp();
         push.rub((values[0] + excess) * push.direction(), values[0] + values[1]);
