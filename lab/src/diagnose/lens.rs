@@ -67,6 +67,9 @@ const SUPPORT: f64 = 4.0;
 /// Rows of the analysis that all trials together should have, unless that would blind it.
 const BUDGET: f64 = 9_000.0;
 
+/// Rows of all trials together beyond which a quicker clock tells nothing of how sharp the least filter may be.
+const PLENTY: f64 = 60_000.0;
+
 /// Rows below which none are given up for a law to act between two filters.
 const FEW: f64 = 1_000.0;
 
@@ -112,14 +115,15 @@ impl Lens {
     }
 
     /// Laws act behind the first of `corners` in Hz, what they leave is kept behind the second, as far as clock and `budget`
-    /// of rows allow, not below the share `least` of the rate.
+    /// of rows allow, not below the share `least` of the rate, as far as that is no quicker than it need be.
     fn cornered(raws: &[Raw], corners: (f64, f64), least: f64, budget: f64) -> Self {
         let period = raws.first().map_or(1.0, |raw| raw.period);
         let rate = period.recip();
         let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
         let affordable = budget / (ROWS * seconds.max(period));
-        let sharpest = corners.0.max(least * rate).min(MOST * rate);
-        let corner = corners.1.min(affordable).max(least * rate).min(MOST * rate);
+        let least = least * rate.min(PLENTY / seconds.max(period));
+        let sharpest = corners.0.max(least).min(MOST * rate);
+        let corner = corners.1.min(affordable).max(least).min(MOST * rate);
         let stride = |corner: f64| ((rate / (ROWS * corner)).round() as usize).max(1);
         let parts = (sharpest / corner).min(SHARPER) as usize;
         if parts < 2 {

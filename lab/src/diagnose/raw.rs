@@ -79,6 +79,40 @@ impl Raw {
         }
     }
 
+    /// Means of `parts` rows each, `parts` odd; an effort, which is held from its row to the next, over the rows that it is
+    /// held for then.
+    ///
+    /// White noise falls with the root of `parts`. So does rounding where noise shakes the reading over its step; a reading
+    /// that keeps to its step for many rows is as coarse as it was.
+    #[must_use]
+    pub fn thinned(&self, parts: usize) -> Self {
+        let half = parts / 2;
+        let means = |values: &[f64], first: usize| -> Vec<f64> {
+            let mean = |rows: &[f64]| rows.iter().sum::<f64>() / rows.len() as f64;
+            (0..values.len() / parts)
+                .map(|at| {
+                    mean(
+                        &values
+                            [(first + at * parts).min(values.len() - 1)..(first + (at + 1) * parts).min(values.len())],
+                    )
+                })
+                .collect()
+        };
+        let shift = half as f64 * self.period;
+        Self {
+            name: self.name.clone(),
+            origin: self.origin + shift,
+            period: self.period * parts as f64,
+            position: means(&self.position, 0),
+            force: self.force.as_ref().map(|force| means(force, 0)),
+            effort: self.effort.as_ref().map(|effort| means(effort, half)),
+            good: self.good.chunks_exact(parts).map(|rows| rows.iter().all(|good| *good)).collect(),
+            figures: self.figures.thinned(parts),
+            dropouts: self.dropouts.iter().map(|at| at - shift).collect(),
+            gaps: self.gaps.iter().map(|(start, span)| (start - shift, *span)).collect(),
+        }
+    }
+
     /// Rows.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -1,5 +1,7 @@
 //! A trial as the analysis sees it: smoothed motion, force and effort at even steps.
 
+use std::sync::Arc;
+
 use super::lens::{Lens, Passes};
 use super::raw::Raw;
 
@@ -41,7 +43,7 @@ pub struct Track {
 /// A command before any filter.
 #[derive(Debug, Clone)]
 pub struct Command {
-    rows: Vec<f64>,
+    rows: Arc<Vec<f64>>,
     lens: Lens,
 }
 
@@ -114,10 +116,21 @@ impl Track {
             force_rate: raw.force.as_ref().map(|force| lens.slope(force)),
             effort: raw.effort.as_ref().map(|effort| lens.held(effort)),
             effort_rate: raw.effort.as_ref().map(|effort| lens.held_slope(effort)),
-            command: raw.effort.as_ref().map(|effort| Command { rows: effort.clone(), lens: lens.clone() }),
+            command: None,
             seen: seen(raw, lens),
             near,
         }
+    }
+
+    /// The same with the commands of `raw`, which it was made of through `lens`.
+    #[must_use]
+    pub fn commanded(mut self, raw: &Raw, lens: &Lens) -> Self {
+        let Some(rows) = raw.effort.clone().map(Arc::new) else { return self };
+        if let (Some(near), Some(passes)) = (&mut self.near, lens.passes()) {
+            near.track.command = Some(Command { rows: rows.clone(), lens: passes.first.clone() });
+        }
+        self.command = Some(Command { rows, lens: lens.clone() });
+        self
     }
 
     /// The view that laws act in.

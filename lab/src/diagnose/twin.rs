@@ -80,7 +80,7 @@ impl Studio {
     }
 
     fn look(&self, number: usize, raw: &Raw) -> Trial {
-        let mut drive = Track::of(raw, &self.drive_lens);
+        let mut drive = Track::of(raw, &self.drive_lens).commanded(raw, &self.drive_lens);
         // At rest friction holds whatever the balance asks for: such rows say nothing for it, and no more against it.
         drive.seen.iter_mut().zip(&drive.still).for_each(|(seen, still)| *seen &= *still == 0.0);
         Trial { number, contact: Track::of(raw, &self.lens), drive }
