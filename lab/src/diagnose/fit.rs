@@ -198,8 +198,8 @@ fn search(data: &Data<'_>, model: &Model, start: &[f64], scene: &Scene, hold: f6
     let mut axes = axes(model, &values, scene);
     clamp(&mut values, &axes);
     let base = data.residual(model, &values, Channels::BOTH);
-    let left = energy(&base);
     let anchor = Anchor::of(model, &values, &axes, hold);
+    let left = energy(&base) + anchor.energy(&values);
     let mut search = Search { data, model, values, base, energy: left, damping: 1e-3, anchor };
     for _ in 0..MOST_STEPS {
         for (axis, fresh) in axes.iter_mut().zip(self::axes(model, &search.values, scene)) {
