@@ -54,7 +54,7 @@ impl Parts<'_> {
 #[must_use]
 pub fn compose(parts: Parts<'_>) -> Option<(Answer, Pictures)> {
     let stand = &parts.search.rounds.last()?.stand;
-    let estimates = interval::estimates(stand, &parts.judgement.improved);
+    let estimates = interval::estimates(parts.study, stand, parts.judgement);
     let twin = parts.study.twin_rests(stand);
     let channels: Vec<Channel<'_>> = [false, true]
         .into_iter()

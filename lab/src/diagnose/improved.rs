@@ -12,7 +12,7 @@ use crate::rig::Rig;
 #[must_use]
 pub fn rig_of(rig: &Rig, study: &Study, search: &Search, judgement: &Judgement) -> Option<Rig> {
     let stand = &search.rounds.last()?.stand;
-    let estimates = interval::estimates(stand, &judgement.improved);
+    let estimates = interval::estimates(study, stand, judgement);
     let named = !judgement.named.is_empty();
     let value = |at: usize| if named { estimates[at].value } else { judgement.nominal.values[at] };
     let mut fresh = rig.clone();

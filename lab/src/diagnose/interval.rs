@@ -1,8 +1,13 @@
 //! How far a value can be trusted: by what twins of the answer make of it.
 
-use super::fit;
-use super::fold::HeldOut;
+use statrs::statistics::Statistics as _;
+
+use super::fit::{self, Data};
+use super::judge::Judgement;
+use super::model::{Channels, index};
+use super::score::solve;
 use super::stand::Stand;
+use super::study::Study;
 
 /// A value without the bias that twins show, and its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,12 +21,16 @@ pub struct Estimate {
 /// Of every value of `stand`'s model.
 ///
 /// A twin is made from known values; what the fit makes of it, less those, is the error of the method: its mean is a bias,
-/// which is taken off, its spread the interval. What the recording shows beyond the twins' residual widens the interval, and so does what its two halves disagree about.
+/// which is taken off, its spread the interval. What the recording shows beyond the twins' residual widens the interval, and
+/// so does what two halves of it disagree about, what the law leaves beside what it takes, and a fraction of a sample that
+/// the fit gave to a clock: it may belong to the value as well.
 #[must_use]
-pub fn estimates(stand: &Stand, held: &HeldOut) -> Vec<Estimate> {
+pub fn estimates(study: &Study, stand: &Stand, judgement: &Judgement) -> Vec<Estimate> {
     let axes = fit::axes(&stand.model, &stand.values, &stand.scene);
     let count = stand.twins.len().max(2) as f64;
     let wider = stand.power_ratio().max(1.0).sqrt();
+    let (clocks, laws) = (clocks(study, stand), laws(study, stand, judgement));
+    let cut = stand.model.effort_limit(&stand.values, 0).is_some();
     (0..stand.values.len())
         .map(|at| {
             let mean = stand.twins.iter().map(|view| view.shift[at]).sum::<f64>() / count;
@@ -29,16 +38,54 @@ pub fn estimates(stand: &Stand, held: &HeldOut) -> Vec<Estimate> {
             let noise = student(count - 1.0) * wider * (variance * (1.0 + 1.0 / count)).sqrt();
             // Two halves of the data that differ by more than noise say how far the law itself can be trusted: half their
             // difference is the deviation of their mean.
-            let apart = match held.taught.as_slice() {
+            let apart = match judgement.improved.taught.as_slice() {
                 [first, second] => Z * 0.5 * (first[at] - second[at]).abs(),
                 _ => 0.0,
             };
-            let half = noise.hypot(apart);
+            let half = noise.hypot(apart).hypot(laws[at]) + clocks[at];
             let (low, high) = (axes[at].low, axes[at].high);
-            let value = (stand.origin[at] - mean).clamp(low, high);
+            // Twins of a drive that was cut keep its commands, which no filter has passed, beside a motion that has passed
+            // one: what they are biased by is not what the recording is.
+            let fitted = if cut { stand.values[at] } else { stand.origin[at] - mean };
+            let value = fitted.clamp(low, high);
             Estimate { value, ends: [(value - half).max(low), (value + half).min(high)] }
         })
         .collect()
+}
+
+/// By how much each value would move if the clocks ran as the recording says, to first order: what the fit gave to them is
+/// told apart from the values by the shape of the laws alone, and sensors sample as they like.
+fn clocks(study: &Study, stand: &Stand) -> Vec<f64> {
+    let (model, values) = (&stand.model, &stand.values);
+    let mut moves = vec![0.0; values.len()];
+    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
+    let axes = fit::axes(model, values, &stand.scene);
+    let base = data.residual(model, values, Channels::BOTH);
+    let columns = fit::jacobian(&data, model, values, &axes, &base);
+    let is_clock = |at: usize| at == index::FORCE_TIMING || at == index::EFFORT_TIMING;
+    let (clocks, others): (Vec<_>, Vec<_>) = columns.into_iter().partition(|(at, _)| is_clock(*at));
+    for (clock, column) in clocks {
+        let Some(parts) = solve(&others, &column) else { continue };
+        others.iter().zip(parts.iter()).for_each(|((at, _), part)| moves[*at] += (part * values[clock]).abs());
+    }
+    moves
+}
+
+/// What the laws may miss of each value of theirs: as much of it as they leave, beyond noise, of what they take.
+fn laws(study: &Study, stand: &Stand, judgement: &Judgement) -> Vec<f64> {
+    let energies: Vec<f64> = stand.twins.iter().map(|view| view.energy).collect();
+    let (mean, deviation) = (energies.iter().mean(), energies.iter().std_dev());
+    let left = (stand.view.energy - mean - 2.0 * deviation).max(0.0);
+    let mut missed = vec![0.0; stand.values.len()];
+    let trials = study.nominal.trials();
+    for named in &judgement.named {
+        let share = (left / named.gain.max(f64::MIN_POSITIVE)).min(1.0).sqrt();
+        let start = stand.model.start_of(named.at);
+        for at in start..start + named.term.all_parameters(trials).len() {
+            missed[at] = share * stand.values[at].abs();
+        }
+    }
+    missed
 }
 
 /// The 97.5 % point of the normal distribution.

@@ -138,7 +138,8 @@ impl Study {
         self.fit(model, start, &own).values
     }
 
-    /// `origin`, which `twins` were made from, moved by what their fits miss `values` in the mean.
+    /// `origin`, which `twins` were made from, moved by what their fits miss `values` in the mean; `values` of a drive that was
+    /// cut, for its twins keep the recorded commands.
     ///
     /// A fit to noisy motion is biased: noise in the acceleration weakens the mass. So are the fits to twins, and those of
     /// twins that are made from what the bias hides come out as the recording does (indirect inference: C. Gourieroux,
@@ -151,6 +152,9 @@ impl Study {
         floors: &Whitener,
         twins: &[Vec<Trial>],
     ) -> Vec<f64> {
+        if model.effort_limit(values, 0).is_some() {
+            return values.to_vec();
+        }
         let scene = self.scene(model, values);
         let shifts: Vec<Vec<f64>> = twins
             .par_iter()
