@@ -9,6 +9,7 @@
 mod card;
 mod contact;
 pub mod contact_law;
+mod course;
 mod drive;
 mod push;
 mod reading;
@@ -19,6 +20,7 @@ mod touch;
 
 pub use card::{Card, Form, Limit, Parameter, Place, Stage, key_of, slug};
 pub use contact_law::{Active, Along};
+pub use course::Course;
 pub use push::Push;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
@@ -26,7 +28,7 @@ pub use scene::{Abscissa, Scene, Start, Tones, Weight, geometric, linear};
 pub use touch::{Touch, gate, ramp};
 
 /// What an effect with a hidden state carries from one sample to the next; all zero at the start of a trial.
-pub type Memory = [f64; 6];
+pub type Memory = [f64; 7];
 
 /// Physics beyond the nominal model.
 pub trait Effect: Sync {

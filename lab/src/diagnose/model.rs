@@ -296,6 +296,7 @@ impl Model {
                     still: track.still[at],
                     force: force(at),
                     effort: effort[at] - late * rate[at],
+                    effort_rate: rate[at],
                     inertia: drive.inertia,
                     viscous: drive.viscous,
                     resistance: 0.0,

@@ -1,5 +1,7 @@
 //! One instant of the drive, as effects see it and change it.
 
+use super::course::Course;
+
 /// One instant of the drive: inertia a + viscous v = effort - force - resistance.
 ///
 /// Along a recording all of it is measured, and what is left of the balance is the residual; in a simulation the
@@ -26,6 +28,8 @@ pub struct Push {
     pub force: f64,
     /// What reaches the tool of the commanded effort.
     pub effort: f64,
+    /// Rate of the effort as it is seen through the filter; not used in a simulation, where an effort is held.
+    pub effort_rate: f64,
     /// Inertia that the tool side moves.
     pub inertia: f64,
     /// Viscous friction.
@@ -39,6 +43,16 @@ impl Push {
     #[must_use]
     pub fn rest(&self) -> f64 {
         self.effort - self.inertia * self.acceleration - self.viscous * self.velocity - self.force - self.resistance
+    }
+
+    /// The effort since the last instant, where it and its rate were `before`.
+    #[must_use]
+    pub fn effort_since(&self, before: [f64; 2]) -> Course {
+        if self.blur > 0.0 {
+            Course::smooth(before, [self.effort, self.effort_rate], self.step)
+        } else {
+            Course::straight(before[0], self.effort)
+        }
     }
 
     /// Mean of the sign of the velocity over the blur, and over what noise leaves undecided.

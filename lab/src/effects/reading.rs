@@ -1,5 +1,7 @@
 //! The force sensor over a whole trial, as effects see it and change it.
 
+use super::course::Course;
+
 /// What the force sensor shows, sample by sample at equal steps.
 #[derive(Debug)]
 pub struct Reading<'a> {
@@ -39,22 +41,29 @@ impl Reading<'_> {
         }
     }
 
-    /// A first-order low-pass of time constant `lag`, exact for a force that is straight between samples.
+    /// A first-order low-pass of time constant `lag`, exact for a force that is a cubic between samples; in a simulation, where
+    /// it has corners and samples are many, for one that is straight.
     pub fn low_pass(&mut self, lag: f64) {
         if lag <= 0.0 || self.force.is_empty() {
             return;
         }
         let ratio = self.step / lag;
-        let keep = (-ratio).exp();
-        // Weights of the old and the new end of the straight piece.
-        let gained = -(-ratio).exp_m1();
-        let (old, new) = (gained / ratio - keep, 1.0 - gained / ratio);
-        let mut state = self.force[0];
-        let mut before = self.force[0];
-        for force in self.force.iter_mut() {
-            state = keep * state + old * before + new * *force;
-            before = *force;
-            *force = state;
+        let source = self.force.to_vec();
+        let last = source.len() - 1;
+        // Changes within a sample's step, to the fourth order.
+        let slope = |at: usize| {
+            let near = |before: usize, after: usize| source[(at + after).min(last)] - source[at.saturating_sub(before)];
+            (8.0 * near(1, 1) - near(2, 2)) / 12.0
+        };
+        let mut state = source[0];
+        for at in 1..source.len() {
+            let course = if self.blur > 0.0 {
+                Course::smooth([source[at - 1], slope(at - 1)], [source[at], slope(at)], 1.0)
+            } else {
+                Course::straight(source[at - 1], source[at])
+            };
+            state = course.lagged(state, ratio);
+            self.force[at] = state;
         }
     }
 

@@ -54,7 +54,7 @@ impl Scene {
     /// at. A link that swings slower smooths the balance of its noise, and seems to explain it.
     #[must_use]
     pub fn link_rate(&self) -> f64 {
-        2.0 * std::f64::consts::TAU * 0.2 / self.drive_step
+        std::f64::consts::TAU * 0.2 / self.drive_step
     }
 
     /// The slowest speed at which an encoder still tells how fast: a quarter of a step within the filter.

@@ -79,6 +79,7 @@ impl<'a> Chain<'a> {
             still: f64::from(at.velocity == 0.0),
             force,
             effort: at.effort,
+            effort_rate: 0.0,
             inertia: self.drive.inertia,
             viscous: self.drive.viscous,
             resistance: 0.0,

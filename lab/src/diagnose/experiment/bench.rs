@@ -155,11 +155,11 @@ impl<'a> Bench<'a> {
     /// Fills in the effort that the motion takes; rows that the drive cannot follow do not count.
     fn drive(&self, track: &mut Track) {
         let mut effort = self.rigid(track);
-        track.effort_rate = Some(vec![0.0; effort.len()]);
         let mut best = (f64::INFINITY, effort.clone(), Vec::new());
         // What the drive makes of a command may depend on the command: what is left of the balance is taken off it, for as
         // long as that helps.
         for _ in 0..TURNS {
+            track.effort_rate = Some(slope(&effort, track.step));
             track.effort = Some(effort.clone());
             let rest = self.effort_rest(track);
             let size: f64 = rest.iter().map(|rest| rest * rest).sum();

@@ -1,6 +1,6 @@
 //! Play between motor and tool.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use crate::effects::{Card, Course, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -48,7 +48,7 @@ const MOST_STEPS: f64 = 64.0;
 impl Link {
     /// Runs the motor's side over the last step and replaces the effort by what the link transmits.
     pub fn carry(&self, memory: &mut Memory, push: &mut Push) {
-        // memory: motor position, its velocity, tool position, tool velocity, effort an instant ago, whether known.
+        // memory: motor position, its velocity, tool position, tool velocity, effort an instant ago, its rate, whether known.
         push.inertia -= self.inertia;
         if self.stiffness <= 0.0 || self.inertia <= 0.0 {
             push.inertia += self.inertia.max(0.0);
@@ -59,32 +59,33 @@ impl Link {
             push.inertia += self.inertia;
             return;
         }
-        if memory[5] == 0.0 {
+        if memory[6] == 0.0 {
             let stretch = push.effort / self.stiffness;
             let lead = stretch + 0.5 * self.gap * stretch.signum();
-            *memory = [push.position + lead, push.velocity, push.position, push.velocity, push.effort, 1.0];
+            let (position, velocity) = (push.position, push.velocity);
+            *memory = [position + lead, velocity, position, velocity, push.effort, push.effort_rate, 1.0];
         }
-        let [mut motor, mut speed, tool, tool_speed, effort, _] = *memory;
+        let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, _] = *memory;
         let part = steps.max(1.0).recip();
         let span = push.step * part;
         let lightness = span / self.inertia;
         let mix = |from: f64, to: f64, part: f64| from + part * (to - from);
         // The tool between two samples, by position and rate at both: a chord would leave k step^2 / 12 of false inertia.
-        let (chord, first, last) = (push.position - tool, push.step * tool_speed, push.step * push.velocity);
-        let (square, cube) = (3.0 * chord - 2.0 * first - last, first + last - 2.0 * chord);
-        let way = |part: f64| tool + part * (first + part * (square + part * cube));
+        let way = Course::smooth([tool, tool_speed], [push.position, push.velocity], push.step);
+        let effort = push.effort_since([effort, effort_rate]);
         for step in 0..steps as usize {
             let start = step as f64 * part;
             let middle = start + 0.5 * part;
             // Half the way, the force there, the other half: motor and tool are compared at one instant, or a common
             // motion would be pushed on by k span / 2 times its speed.
             motor += 0.5 * span * speed;
-            let pull = self.pull(motor - way(middle), speed - mix(tool_speed, push.velocity, start));
-            speed += lightness * (mix(effort, push.effort, middle) - pull);
+            let pull = self.pull(motor - way.at(middle), speed - mix(tool_speed, push.velocity, start));
+            speed += lightness * (effort.at(middle) - pull);
             motor += 0.5 * span * speed;
         }
-        *memory = [motor, speed, push.position, push.velocity, push.effort, 1.0];
+        *memory = [motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0];
         push.effort = self.pull(motor - push.position, speed - push.velocity);
+        push.effort_rate = self.stiffness * (speed - push.velocity);
     }
 
     fn fastest(&self) -> f64 {

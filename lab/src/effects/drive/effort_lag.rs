@@ -32,19 +32,18 @@ impl Effect for EffortLag {
     }
 
     fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
-        // memory: effort at the tool, command an instant ago, whether they are known.
+        // memory: effort at the tool, command an instant ago, its rate, whether they are known.
         let time = values[0];
-        if memory[2] == 0.0 || time <= 0.0 {
-            (memory[0], memory[1], memory[2]) = (push.effort, push.effort, 1.0);
+        if memory[3] == 0.0 || time <= 0.0 {
+            (memory[0], memory[1], memory[2], memory[3]) = (push.effort, push.effort, push.effort_rate, 1.0);
             return;
         }
         let ratio = push.step / time;
         if ratio > 0.0 {
-            let keep = (-ratio).exp();
-            let gained = -(-ratio).exp_m1() / ratio;
-            memory[0] = keep * memory[0] + (gained - keep) * memory[1] + (1.0 - gained) * push.effort;
+            memory[0] = push.effort_since([memory[1], memory[2]]).lagged(memory[0], ratio);
         }
-        memory[1] = push.effort;
+        (memory[1], memory[2]) = (push.effort, push.effort_rate);
+        push.effort_rate = (push.effort - memory[0]) / time;
         push.effort = memory[0];
     }
 }
