@@ -173,9 +173,9 @@ fn exudyn_plays_the_nominal_rig_and_its_effects() {
 /// Share of a sample by which `rest` is the rate of `signal`: the shift of least squares.
 fn late(rows: &[usize], signal: &[f64], rest: &[f64]) -> f64 {
     let rate = |row: usize| 0.5 * (signal[row + 1] - signal[row - 1]);
-    let (above, below) = rows.iter().fold((0.0, 0.0), |(above, below), row| {
-        (above + rate(*row) * rest[*row], below + rate(*row) * rate(*row))
-    });
+    let (above, below) = rows
+        .iter()
+        .fold((0.0, 0.0), |(above, below), row| (above + rate(*row) * rest[*row], below + rate(*row) * rate(*row)));
     above / below
 }
 
