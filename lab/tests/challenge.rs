@@ -132,7 +132,7 @@ fn the_readme_shows_the_published_score() {
     if let Some(real) = &challenge.recorded {
         let diagnosis = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
         assert_eq!(
-            summary::replaced(&diagnosis, &recorded::table::table(real)).as_deref(),
+            summary::replaced(&diagnosis, &recorded::table::section(real)).as_deref(),
             Some(diagnosis.as_str()),
             "made by hand?"
         );

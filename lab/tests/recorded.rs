@@ -131,7 +131,7 @@ fn three_specimens_are_sealed_diagnosed_opened_and_scored_on_trials_that_were_ke
     // The score is that of its rows, and the page and the terminal show them.
     let page = fs::read_to_string(home.path().join("page.html")).unwrap();
     let of = |is: fn(&Row) -> bool| recorded.rows.iter().filter(|row| is(row)).count();
-    assert_eq!((recorded.n, recorded.held_back), (3, of(|row| row.unseen.is_some())));
+    assert_eq!((recorded.n, recorded.held_back), (3, of(|row| row.left().is_some())));
     assert_eq!(recorded.rest_owned, of(Row::owns_rest));
     assert_eq!(recorded.named + recorded.owned + recorded.undecidable + recorded.wrong + recorded.missed, recorded.n);
     assert!(recorded.rows.iter().all(|row| page.contains(&row.recording) && said.contains(&row.words())), "{said}");

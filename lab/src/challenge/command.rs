@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result, ensure};
 use clap::{Args, ValueEnum};
 use palpate_cases::Source;
 
-use super::recorded::table::table;
+use super::recorded::table::{section, table};
 use super::score::Challenge;
 use super::{page, protocol, summary};
 use crate::device::project;
@@ -132,7 +132,7 @@ fn publish(challenge: &Challenge, text: &str, summary: &str) -> Result<()> {
         (docs.join("challenge.html"), page),
     ];
     if let Some(recorded) = &challenge.recorded {
-        files.push(filled(docs.join("diagnosis.md"), &table(recorded))?);
+        files.push(filled(docs.join("diagnosis.md"), &section(recorded))?);
     }
     files.into_iter().try_for_each(|(path, bytes)| commit(OutFile::create(&path)?, &bytes))
 }

@@ -17,8 +17,8 @@ pub enum Judgement {
     Named,
     /// Nothing that is stated is named, nor anything else that is not known; the unknown is owned.
     Owned,
-    /// The data do not decide, and the answer says so: what is known is among the rivals of the one name that is not, or
-    /// dry friction is left open against damping.
+    /// The data do not decide, and the answer says so: a rival of it names nothing but what is known, or dry friction is
+    /// left open against damping.
     Undecidable,
     /// Something is named that is not known of it, or claimed as decided that is not.
     Wrong,
@@ -78,6 +78,12 @@ fn is_known(set: &Set, name: &str) -> bool {
     set.has.contains(&name) || set.may.contains(&name)
 }
 
+/// Whether `names` hold something that is stated, and nothing that is not known.
+fn is_right(set: &Set, names: &[String]) -> bool {
+    names.iter().any(|name| set.has.contains(&name.as_str()))
+        && names.iter().all(|name| is_known(set, name) || name == UNKNOWN)
+}
+
 /// What came of the answer `told` on a recording of `set`.
 #[must_use]
 pub fn judge(set: &Set, told: &Told) -> Judgement {
@@ -85,7 +91,7 @@ pub fn judge(set: &Set, told: &Told) -> Judgement {
     let claims_friction = set.friction_is_open && named.iter().any(|name| DRY.contains(name));
     match wrong.as_slice() {
         _ if named.is_empty() => Judgement::Missed,
-        [_] if rivals(told).iter().any(|name| is_known(set, name)) => Judgement::Undecidable,
+        [_, ..] if told.rivals.iter().any(|rival| is_right(set, &rival.physics)) => Judgement::Undecidable,
         [_, ..] => Judgement::Wrong,
         [] if claims_friction && leaves_friction_open(told) => Judgement::Undecidable,
         [] if claims_friction => Judgement::Wrong,
@@ -103,7 +109,8 @@ mod tests {
 
     fn told(named: &[&str], rivals: &[&str], finding: &str) -> Told {
         let physics: Vec<_> = named.iter().map(|name| json!({"name": name, "parameters": []})).collect();
-        let rivals: Vec<_> = rivals.iter().map(|name| json!({"physics": [name]})).collect();
+        let rivals: Vec<_> =
+            rivals.iter().map(|names| json!({"physics": names.split('+').collect::<Vec<_>>()})).collect();
         let fit = json!({"unit": "N", "noise_floor": 1.0, "refitted": 2.0, "improved": 1.0});
         let findings = json!([{"text": finding}]);
         let all =
@@ -123,7 +130,8 @@ mod tests {
             (arm, &[], &[], "", Judgement::Missed),
             (arm, &["gravity_load", "cogging"], &[], "", Judgement::Wrong),
             (arm, &["cogging"], &["gravity_load"], "", Judgement::Undecidable),
-            (arm, &["cogging", "backlash"], &["gravity_load"], "", Judgement::Wrong),
+            (arm, &["gravity_load", "cogging"], &["gravity_load+coulomb_friction"], "", Judgement::Undecidable),
+            (arm, &["gravity_load", "cogging"], &["gravity_load+backlash"], "", Judgement::Wrong),
             (piston, &["hysteresis"], &[], "", Judgement::Wrong),
             (piston, &["hysteresis"], &["adhesion"], "", Judgement::Wrong),
             (piston, &["hysteresis"], &["quadratic_damping"], "", Judgement::Undecidable),

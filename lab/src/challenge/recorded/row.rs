@@ -25,10 +25,12 @@ pub struct Recorded {
     pub wrong: usize,
     /// Nothing that is stated is named, and no unknown owned.
     pub missed: usize,
-    /// Specimens with trials that were kept back.
+    /// Specimens with trials that were kept back, of which physics is named.
     pub held_back: usize,
     /// On these, the residual with the named physics over that of the refitted nominal law, median.
     pub left_median: f64,
+    /// On so many of these it is smaller.
+    pub better: usize,
     /// Every specimen.
     pub rows: Vec<Row>,
 }
@@ -149,10 +151,11 @@ impl Row {
         words
     }
 
-    /// Residual with the named physics over that of the refitted nominal law, on the trials kept back.
+    /// Residual with the named physics over that of the refitted nominal law, on the trials kept back; none where nothing is
+    /// named.
     #[must_use]
     pub fn left(&self) -> Option<f64> {
-        let unseen = self.unseen?;
+        let unseen = self.unseen.filter(|_| self.named.iter().any(|name| name != UNKNOWN))?;
         Some(unseen.after? / unseen.before?).filter(|left| left.is_finite())
     }
 
@@ -202,6 +205,7 @@ impl Recorded {
             wrong: count(Judgement::Wrong),
             missed: count(Judgement::Missed),
             held_back: left.len(),
+            better: left.iter().filter(|left| **left < 1.0).count(),
             left_median: median(left.into_iter()),
             rows,
         }

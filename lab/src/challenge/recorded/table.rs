@@ -8,31 +8,37 @@ const MOST: usize = 3;
 /// One line: how many came out how.
 #[must_use]
 pub fn line(recorded: &Recorded) -> String {
-    let Recorded { n, named, rest_owned, owned, undecidable, wrong, missed, held_back, left_median, .. } = recorded;
+    let Recorded { n, named, rest_owned, owned, undecidable, wrong, missed, held_back, left_median, better, .. } =
+        recorded;
     let mut text = format!(
         "Real recordings, {n} specimens: known physics named and nothing else {named} (in {rest_owned} the rest owned as unknown), \
          owned as unknown {owned}, undecidable and said so {undecidable}, wrong {wrong}, missed {missed}."
     );
     if *held_back > 0 {
         text += &format!(
-            " On trials that the diagnosis never saw ({held_back} specimens), nothing fitted, the named physics leaves {:.0} % of the \
-             refitted law's residual (median).",
+            " On trials that the diagnosis never saw ({held_back} specimens), nothing fitted, the named physics leaves less than the refitted \
+             law in {better}, {:.0} % of it in the median.",
             100.0 * left_median
         );
     }
     text
 }
 
+/// The line and the table, for a page of the documentation.
+#[must_use]
+pub fn section(recorded: &Recorded) -> String {
+    format!("{}\n\n{}", line(recorded), table(recorded))
+}
+
 /// A row each.
 #[must_use]
 pub fn table(recorded: &Recorded) -> String {
-    let mut text = format!(
-        "{}\n\n| recording | known | verdict: names | rivals | residual | judgement |\n|---|---|---|---|---|---|\n",
-        line(recorded)
-    );
+    let mut text =
+        "| recording | known | verdict: names | rivals | residual | judgement |\n|---|---|---|---|---|---|\n"
+            .to_owned();
     recorded.rows.iter().for_each(|row| text += &of(row));
-    text + "\nResiduals are root mean squares, refitted nominal law to named physics (floor); of the trials kept back, or, marked *, of stretches \
-            of the same trial, where it cannot be parted.\n"
+    text + "\nResiduals are root mean squares, refitted nominal law to named physics (floor): of the trials kept back, or, marked *, of \
+            stretches of the same trial, where it cannot be parted.\n"
 }
 
 fn of(row: &Row) -> String {

@@ -29,6 +29,10 @@ const TOUCHED: f64 = 0.2;
 const STEPS: usize = 30;
 const REST: f64 = 1e-6;
 
+/// Searches at most for the nominal values, and the share of its energy by which one has to be better to go on.
+const SEARCHES: usize = 100;
+const SETTLED: f64 = 1e-4;
+
 /// Seed of twins that nobody asks for.
 const SEED: u64 = 1;
 
@@ -38,7 +42,7 @@ const SEED: u64 = 1;
 /// Trials that the rig does not predict.
 pub fn refitted(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Rig> {
     let study = study(rig, origin, sensed(rig, origin, trials)?, SEED)?;
-    let values = study.first_fit();
+    let values = settled(&study);
     let mut fresh = rig.clone();
     if let Some(contact) = &mut fresh.contact {
         contact.stiffness = values[index::STIFFNESS];
@@ -50,6 +54,23 @@ pub fn refitted(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Rig> {
         drive.viscous = values[index::VISCOUS];
     }
     Ok(fresh)
+}
+
+/// The nominal values of least squares. A search takes steps in measures of the depth: a preload that lies metres beyond,
+/// as that of a clamped spring can, is reached by searching again from where the last one gave up.
+fn settled(study: &Study) -> Vec<f64> {
+    let whitener = study.even_floors();
+    let mut values = study.first_fit();
+    let mut least = f64::INFINITY;
+    for _ in 0..SEARCHES {
+        let fit = study.fit(&study.nominal, &values, &whitener);
+        values = fit.values;
+        if fit.energy > (1.0 - SETTLED) * least {
+            break;
+        }
+        least = fit.energy;
+    }
+    values
 }
 
 /// Root mean squares over the scored rows of `trials` that `models` leave, looked at through the filter of the first.
