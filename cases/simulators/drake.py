@@ -5,6 +5,13 @@ F = max(0, k (p + tau v)) with tau the relaxation time of its material: the nomi
 TAMSI approximation has the contact of Hunt and Crossley instead, F = k p max(0, 1 + d v), and no linear damping.
 Friction is that of a shoe which is drawn over a plane. A clamped tool has a linear spring-damper to the environment.
 The force is the reaction in the weld between the carriage and the tip.
+
+Drake's discrete step, v' = v + h (effort - F) / m and x' = x + h v', is that of Stoermer and Verlet: effort and force
+act at t, where x is known, and v is the velocity half a step before. A row is therefore read half a step before the
+instant of its x: there the position is x - h v / 2, the velocity is v, an effort commanded from the row on is held from
+that instant on, and the force is the mean of the steps before and after. SAP has the spring of the end of its step,
+k (p + h v' + tau v'), so tau is shorter by h. TAMSI has k (p + h v') (1 + d v'), a damper k h beside the law that no
+value takes off: its steps are finer.
 """
 
 import os
@@ -32,6 +39,7 @@ import logging  # noqa: E402
 from protocol import PERIOD, Track, only, serve  # noqa: E402
 
 STEPS = 2
+STEPS_OF_TAMSI = 6
 RADIUS = 0.05
 ANCHOR = 1.0
 EFFECTS = (
@@ -50,10 +58,12 @@ class Model:
     def __init__(self, rig, effects, start):
         deep, friction, gravity, compliance, inertia, saturation = only(effects, *EFFECTS)
         builder = DiagramBuilder()
+        self.steps = STEPS_OF_TAMSI if deep else STEPS
+        self.step = PERIOD / self.steps
         # Drake's lagged approximation has the same contact and takes four times as long a step; it is what is left once
         # TAMSI, which Drake means to drop, is gone.
         config = MultibodyPlantConfig(
-            time_step=PERIOD / STEPS,
+            time_step=self.step,
             contact_model="point",
             discrete_contact_approximation="tamsi" if deep else "sap",
         )
@@ -102,7 +112,8 @@ class Model:
     def surface(self, tip, rig, deep):
         """A sphere that meets a wall at the surface."""
         dissipation = deep["alpha"] / rig.stiffness if deep else 0.0
-        material = solid(rig.stiffness, 0.0, dissipation, rig.damping / rig.stiffness)
+        relaxation = max(rig.damping / rig.stiffness - self.step, 0.0)
+        material = solid(rig.stiffness, 0.0, dissipation, relaxation)
         self.plant.RegisterCollisionGeometry(tip, RigidTransform([-RADIUS, 0, 0]), Sphere(RADIUS), "tip", material)
         wall = RigidTransform([rig.surface + 0.5, 0, 0])
         self.plant.RegisterCollisionGeometry(self.plant.world_body(), wall, Box(1, 1, 1), "wall", material)
@@ -141,24 +152,23 @@ def solid(stiffness, friction, dissipation, relaxation):
 def play(rig, loop, effects, reference):
     """One trial."""
     model = Model(rig, effects, float(reference[0]))
-    track, step = Track(), PERIOD / STEPS
-    count, force = 0, 0.0
+    track, count, before = Track(), 0, None
     for wanted in reference:
-        position, velocity = model.tool.get_translation(model.context), model.tool.get_translation_rate(model.context)
+        velocity = model.tool.get_translation_rate(model.context)
+        position = model.tool.get_translation(model.context) - 0.5 * model.step * velocity
         reading = loop.read(position)
         effort = loop.effort(wanted, reading)
         track.state(position, velocity, reading, effort)
-        track.force.append(force)
         model.effort.GetMutableData().set_value([effort])
-        total = 0.0
-        for _ in range(STEPS):
+        forces = []
+        for _ in range(model.steps):
             count += 1
-            model.simulator.AdvanceTo(count * step)
-            force = model.pushed()
-            total += force
-        track.force_mean.append(total / STEPS)
-    # Drake knows of no force before its first step: a clamped tool is taken to have rested until then.
-    track.force[0] = track.force_mean[0]
+            model.simulator.AdvanceTo(count * model.step)
+            forces.append(model.pushed())
+        # Drake knows of no force before its first step: a clamped tool is taken to have rested until then.
+        track.force.append(0.5 * (forces[0] + (forces[0] if before is None else before)))
+        track.force_mean.append(sum(forces) / model.steps)
+        before = forces[-1]
     return track
 
 

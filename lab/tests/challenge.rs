@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
+use palpate_lab::challenge::recorded;
 use palpate_lab::challenge::score::Challenge;
 use palpate_lab::challenge::summary;
 use serde_json::Value;
@@ -24,6 +25,7 @@ fn json(path: &Path) -> Value {
 /// Holds a challenge of `cases` and `seed` in `folder`; returns the score and what was said.
 fn held(folder: &Path, cases: usize, seed: &str) -> (Value, String) {
     let arguments = ["challenge", "--source", "own", "--seed", seed, "--keep", "kept", "--json", "score.json"];
+    let arguments = arguments.into_iter().chain(["--recordings", "none"]);
     let output = palpate().current_dir(folder).args(arguments).args(["--cases", &cases.to_string()]).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success() && output.stdout.is_empty(), "{said}");
@@ -112,7 +114,7 @@ fn a_score_is_redrawn_without_a_run_and_a_broken_one_is_refused() {
 
 #[test]
 fn no_case_is_a_fault_of_the_command_line() {
-    let refused = palpate().args(["challenge", "--cases", "0"]).output().unwrap();
+    let refused = palpate().args(["challenge", "--cases", "0", "--recordings", "none"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
 }
 
@@ -126,4 +128,13 @@ fn the_readme_shows_the_published_score() {
     assert_eq!(summary::replaced(&readme, &table).as_deref(), Some(readme.as_str()), "made by hand?");
     let page = fs::read_to_string(project.join("docs/challenge.html")).unwrap();
     assert!(page.contains(&challenge.sealed_sha256), "the page is of another run");
+    // A run that was published before there were real recordings in it has none, and is read all the same.
+    if let Some(real) = &challenge.recorded {
+        let diagnosis = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
+        assert_eq!(
+            summary::replaced(&diagnosis, &recorded::table::section(real)).as_deref(),
+            Some(diagnosis.as_str()),
+            "made by hand?"
+        );
+    }
 }

@@ -1,24 +1,27 @@
-//! The diagnosis on real recordings: whether it names what their makers know of them.
+//! The diagnosis on real recordings: whether it names what their makers know of them, and whether what it learnt foretells
+//! trials that it never saw.
 //!
 //! The recordings are not part of this repository: `PALPATE_RECORDINGS` names the folder that holds them. Without it the
 //! tests say so and pass. A few that are stable run with all other tests; every one, with a table, by
 //!
 //! ```text
-//! cargo test --release -p palpate-lab --test recorded -- --ignored --nocapture
+//! palpate challenge --cases 0 --recordings all
 //! ```
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
 
-use palpate_lab::diagnose::answer::Answer;
-use palpate_lab::recordings::{ADVICE, folder};
-
-#[path = "recorded/judged.rs"]
-mod judged;
-#[path = "recorded/sets.rs"]
-mod sets;
-
-use judged::{DRY, diagnosed, leaves_friction_open, line, named, rivals};
-use sets::{SETS, Set};
+use assert_cmd::Command;
+use palpate_lab::challenge::recorded::judge::{DRY, leaves_friction_open, named, rivals};
+use palpate_lab::challenge::recorded::row::{Recorded, Row};
+use palpate_lab::challenge::score::Challenge;
+use palpate_lab::challenge::told::Told;
+use palpate_lab::diagnose::diagnose;
+use palpate_lab::recording::Recording;
+use palpate_lab::recordings::{ADVICE, VARIABLE, folder};
+use palpate_lab::rig::Rig;
+use tempfile::TempDir;
 
 /// Says that there are none.
 fn recordings() -> Option<PathBuf> {
@@ -29,17 +32,22 @@ fn recordings() -> Option<PathBuf> {
     found
 }
 
-/// The answer on one recording, `None` where there are none.
-fn answer(rig: &str, file: &str) -> Option<Answer> {
-    let answer = diagnosed(rig, &recordings()?.join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
-    println!("{file}: {:?} {:?}, rivals {:?}", answer.verdict, named(&answer), rivals(&answer));
-    Some(answer)
+/// What `palpate diagnose --rig lab/rigs/RIG.toml FILE` tells of one recording, `None` where there are none.
+fn told(rig: &str, file: &str) -> Option<Told> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("rigs").join(rig).with_extension("toml");
+    let trial = recordings()?.join(file);
+    let rig = Rig::read(&path).unwrap();
+    let trial = Recording::read(&trial, &rig).unwrap();
+    let found = diagnose(&rig, &path.display().to_string(), &[trial], &[], 1, &|_| ()).unwrap();
+    let told: Told = serde_json::from_value(serde_json::to_value(found.answer).unwrap()).unwrap();
+    println!("{file}: {} {:?}, rivals {:?}", told.verdict, named(&told), rivals(&told));
+    Some(told)
 }
 
 /// Asserts that `effects` are named in the recording.
 fn is_named(rig: &str, file: &str, effects: &[&str]) {
-    let Some(answer) = answer(rig, file) else { return };
-    let found = named(&answer);
+    let Some(told) = told(rig, file) else { return };
+    let found = named(&told);
     for effect in effects {
         assert!(found.contains(effect), "{file}: {effect} is not among {found:?}");
     }
@@ -69,38 +77,80 @@ fn a_gel_holds_on_to_the_tip() {
 /// At two constant speeds a damper makes the same loop as dry friction.
 #[test]
 fn a_piston_at_one_speed_each_way_does_not_decide_what_kind_of_friction_it_has() {
-    let Some(answer) = answer("pneumatic_seal", "pneumatic_seal_friction/O_ring_1bar.csv") else { return };
-    let claimed: Vec<_> = named(&answer).into_iter().filter(|name| DRY.contains(name)).collect();
-    assert!(claimed.is_empty() || leaves_friction_open(&answer), "{claimed:?} is claimed as if it were decided");
+    let Some(told) = told("pneumatic_seal", "pneumatic_seal_friction/O_ring_1bar.csv") else { return };
+    let claimed: Vec<_> = named(&told).into_iter().filter(|name| DRY.contains(name)).collect();
+    assert!(claimed.is_empty() || leaves_friction_open(&told), "{claimed:?} is claimed as if it were decided");
+}
+
+fn challenge(home: &Path, recordings: &str, root: Option<&Path>) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+    if let Some(root) = root {
+        command.env(VARIABLE, root);
+    }
+    let arguments = ["challenge", "--cases", "0", "--keep", "kept", "--json", "score.json", "--report", "page.html"];
+    command.current_dir(home).args(arguments).args(["--recordings", recordings]).output().unwrap()
+}
+
+/// The rows of a trial in `folder`.
+fn rows(folder: &Path, file: &str) -> usize {
+    fs::read_to_string(folder.join(file)).unwrap().lines().count() - 1
 }
 
 #[test]
-#[ignore = "many minutes"]
-fn every_recording() {
+fn three_specimens_are_sealed_diagnosed_opened_and_scored_on_trials_that_were_kept_back() {
     let Some(root) = recordings() else { return };
-    println!(
-        "| recording | verdict | named | rivals | held-out RMS refitted -> improved (floor) | known | judgement |"
-    );
-    println!("|---|---|---|---|---|---|---|");
-    let mut seen = 0;
-    for set in &SETS {
-        for file in files(&root, set) {
-            let name = format!("{}/{}", set.folder, file.file_stem().unwrap_or_default().to_string_lossy());
-            println!("{}", line(set, &name, &diagnosed(set.rig, &file)));
-            seen += 1;
-        }
+    let home = TempDir::new().unwrap();
+    let names = "tissue_indentation/soft_P002_laser,nanoindentation/tungsten_cycles,keyswitch_press/Cherry-MX-Red";
+    let output = challenge(home.path(), names, None);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    println!("{said}");
+    let text = fs::read_to_string(home.path().join("score.json")).unwrap();
+    let score: Challenge = serde_json::from_str(&text).unwrap();
+    let recorded: Recorded = score.recorded.unwrap();
+
+    // Every answer and every trial kept back is sealed before any diagnosis, and the folder shows neither.
+    let kept = home.path().join("kept");
+    let sealed = fs::read_to_string(kept.join("answers.jsonl")).unwrap();
+    assert_eq!(sealed.lines().count(), 3);
+    assert!(said.find(&score.sealed_sha256).unwrap() < said.find("unseen").unwrap(), "{said}");
+    let switch = kept.join("recorded-00");
+    let mut files: Vec<_> =
+        fs::read_dir(&switch).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    files.sort();
+    assert_eq!(files, ["diagnosis.json", "improved.toml", "rig.toml", "trial-1.csv"]);
+    let [switch, diamond, soft] = recorded.rows.as_slice() else { panic!("{:?}", recorded.rows) };
+    assert!(switch.whole.is_some() && switch.unseen.is_none() && switch.scored.is_empty());
+    for (row, folder) in [(diamond, "recorded-01"), (soft, "recorded-02")] {
+        let [[taught], [scored]] = [&row.taught, &row.scored].map(Vec::as_slice) else { panic!("{row:?}") };
+        let source = root.join(row.recording.split('/').next().unwrap());
+        assert_ne!(taught, scored);
+        assert_eq!(rows(&kept.join(folder), "trial-1.csv"), rows(&source, taught), "{}", row.recording);
     }
-    assert!(seen > 0, "no recording in {}", root.display());
+
+    // The score is that of its rows, and the page and the terminal show them.
+    let page = fs::read_to_string(home.path().join("page.html")).unwrap();
+    let of = |is: fn(&Row) -> bool| recorded.rows.iter().filter(|row| is(row)).count();
+    assert_eq!((recorded.n, recorded.held_back), (3, of(|row| row.left().is_some())));
+    assert_eq!(recorded.rest_owned, of(Row::owns_rest));
+    assert_eq!(recorded.named + recorded.owned + recorded.undecidable + recorded.wrong + recorded.missed, recorded.n);
+    assert!(recorded.rows.iter().all(|row| page.contains(&row.recording) && said.contains(&row.words())), "{said}");
+
+    // What was learnt from one trial foretells another: a dent that stays takes nine tenths of what a spring leaves, and
+    // relaxation with a power law half. Nothing was fitted, so neither had to be.
+    assert!(diamond.named.contains(&"plastic_set".to_owned()) && diamond.left().unwrap() < 0.1, "{said}");
+    assert!(soft.named.contains(&"stress_relaxation".to_owned()) && soft.left().unwrap() < 0.5, "{said}");
 }
 
-/// The recordings of `set`, by name.
-fn files(root: &std::path::Path, set: &Set) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(root.join(set.folder)) else { return Vec::new() };
-    let belongs = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        name.ends_with(".csv") && set.files.iter().any(|start| name.starts_with(start))
-    };
-    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(belongs).collect();
-    files.sort();
-    files
+#[test]
+fn absent_recordings_and_unknown_names_are_said() {
+    let home = TempDir::new().unwrap();
+    let nowhere = challenge(home.path(), "all", Some(&home.path().join("nowhere")));
+    assert_eq!(nowhere.status.code(), Some(1));
+    assert!(String::from_utf8(nowhere.stderr).unwrap().contains(VARIABLE));
+    if let Some(root) = recordings() {
+        let unknown = challenge(home.path(), "tissue_indentation/soft,tofu", Some(&root));
+        assert_eq!(unknown.status.code(), Some(2));
+        assert!(String::from_utf8(unknown.stderr).unwrap().contains("tofu"));
+    }
 }

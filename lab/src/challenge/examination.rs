@@ -18,22 +18,33 @@ const ANSWER: &str = "diagnosis.json";
 /// # Errors
 /// The command cannot be started.
 pub fn examine(tool: &Path, case: &Drawn) -> Result<Row> {
+    let (told, seconds) = diagnose(tool, &case.folder, &["trial-1.csv", "trial-2.csv"])?;
+    Ok(Row::score(&case.truth, told, seconds))
+}
+
+/// Runs `tool diagnose` in `folder` on its rig file, with `arguments`: what it tells, or why nothing, and the seconds from
+/// its start to its end.
+///
+/// # Errors
+/// The command cannot be started.
+pub fn diagnose(tool: &Path, folder: &Path, arguments: &[&str]) -> Result<(Result<Told, String>, f64)> {
     let start = Instant::now();
     let output = Command::new(tool)
-        .args(["diagnose", "--rig", "rig.toml", "trial-1.csv", "trial-2.csv", "--json", ANSWER])
-        .current_dir(&case.folder)
+        .args(["diagnose", "--rig", "rig.toml", "--json", ANSWER])
+        .args(arguments)
+        .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .output()
         .with_context(|| format!("cannot run {}", tool.display()))?;
     let seconds = start.elapsed().as_secs_f64();
     let told = if output.status.success() {
-        told(&case.folder.join(ANSWER))
+        told(&folder.join(ANSWER))
     } else {
         let said = String::from_utf8_lossy(&output.stderr);
         Err(said.lines().last().unwrap_or("it said nothing").to_owned())
     };
-    Ok(Row::score(&case.truth, told, seconds))
+    Ok((told, seconds))
 }
 
 fn told(path: &Path) -> Result<Told, String> {

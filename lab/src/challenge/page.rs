@@ -4,6 +4,7 @@ mod concealed;
 mod confusion;
 mod failure;
 mod power;
+mod recorded;
 mod rivals;
 
 use std::io::{self, Write};
@@ -32,6 +33,7 @@ pub fn write(challenge: &Challenge, out: &mut impl Write) -> io::Result<()> {
         (power::section(challenge))
         (concealed::section(challenge))
         (rivals::section(challenge))
+        (recorded::section(challenge))
         (sources(challenge))
         (confusion::section(challenge))
         (failure::section(challenge))
@@ -150,13 +152,13 @@ fn protocol(challenge: &Challenge) -> Markup {
             ol {
                 li { "Cases were drawn from the seed: what is concealed, its form and its strength, the rig and how wrong its file states it, sensors, trajectories, channels." }
                 li { "Each was written as a rig file and two recordings, in a folder of its own. The answers were committed to by SHA-256 "
-                    code { (challenge.sealed_sha256) } " before the first diagnosis." }
+                    code { (challenge.sealed_sha256) } " before the first diagnosis; those to real recordings with them." }
                 li { "Each was diagnosed by " code { "palpate diagnose --rig rig.toml trial-1.csv trial-2.csv" } " in its folder." }
                 li { "The seal was opened, held against the commitment, and the answers were scored." }
             }
             p.fine {
-                "Strength is the root mean square that the nominal physics cannot take up, over the floor of the sensor. The same seed gives the same \
-                 recordings and the same commitment: " code { "palpate challenge --cases " (challenge.cases) " --seed " (challenge.seed) } "."
+                "Strength is the root mean square that the nominal physics cannot take up, over the floor of the sensor. The same seed, with the same \
+                 real recordings, gives the same cases and the same commitment: " code { "palpate challenge --cases " (challenge.cases) " --seed " (challenge.seed) } "."
             }
         }
     }

@@ -13,7 +13,7 @@ use super::told::Told;
 use super::values;
 
 /// The name under which an answer owns that nothing of its list explains the rest.
-const UNKNOWN: &str = "unknown";
+pub const UNKNOWN: &str = "unknown";
 
 /// One case, scored.
 #[derive(Debug, Clone, Serialize, Deserialize)]

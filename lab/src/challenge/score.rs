@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use palpate_cases::truth::Kind;
 use serde::{Deserialize, Serialize};
 
+use super::recorded::row::Recorded;
 use super::row::{Compared, Row};
 
 /// A run: its score, and the cases it was made of.
@@ -32,6 +33,9 @@ pub struct Challenge {
     pub residual_over_floor: Residual,
     /// Of one diagnosis.
     pub seconds_median: f64,
+    /// Real recordings, where there were any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<Recorded>,
     /// What was left out of the run, and why.
     pub left_out: Vec<String>,
     /// Every case.
@@ -157,6 +161,7 @@ impl Challenge {
             },
             seconds_median: median(rows.iter().map(|row| row.seconds)),
             single: Single::of(&single),
+            recorded: None,
             left_out,
             rows,
         }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
-use palpate_cases::Truth;
+use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 
 /// A file of answers that has been committed to.
@@ -16,12 +16,12 @@ pub struct Seal {
 }
 
 impl Seal {
-    /// Writes `truths` to `path`, a line of JSON each, and commits to it.
+    /// Writes `answers` to `path`, a line of JSON each, and commits to it.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn close<'a>(path: &Path, truths: impl Iterator<Item = &'a Truth>) -> Result<Self> {
-        let text = lines(truths)?;
+    pub fn close(path: &Path, answers: impl Iterator<Item = impl Serialize>) -> Result<Self> {
+        let text = lines(answers)?;
         fs::write(path, &text).with_context(|| format!("cannot write {}", path.display()))?;
         Ok(Self { path: path.to_owned(), sha256: hash(text.as_bytes()) })
     }
@@ -32,24 +32,24 @@ impl Seal {
         &self.sha256
     }
 
-    /// Holds the file against the commitment, and `truths`, which are to be scored by, against the file.
+    /// Holds the file against the commitment, and `answers`, which are to be scored by, against the file.
     ///
     /// # Errors
     /// The file is gone or another, or the answers are not those that were sealed.
-    pub fn open<'a>(&self, truths: impl Iterator<Item = &'a Truth>) -> Result<()> {
+    pub fn open(&self, answers: impl Iterator<Item = impl Serialize>) -> Result<()> {
         let found = fs::read(&self.path).with_context(|| format!("cannot read {}", self.path.display()))?;
         let broken =
             || format!("{}: found another file than was sealed by SHA-256 {}", self.path.display(), self.sha256);
         ensure!(hash(&found) == self.sha256, broken());
-        ensure!(found == lines(truths)?.as_bytes(), "the answers to be scored by are not those that were sealed");
+        ensure!(found == lines(answers)?.as_bytes(), "the answers to be scored by are not those that were sealed");
         Ok(())
     }
 }
 
-fn lines<'a>(truths: impl Iterator<Item = &'a Truth>) -> Result<String> {
+fn lines(answers: impl Iterator<Item = impl Serialize>) -> Result<String> {
     let mut text = String::new();
-    for truth in truths {
-        text += &serde_json::to_string(truth).context("an answer cannot be written as JSON")?;
+    for answer in answers {
+        text += &serde_json::to_string(&answer).context("an answer cannot be written as JSON")?;
         text.push('\n');
     }
     Ok(text)
@@ -65,7 +65,7 @@ fn hash(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use palpate_cases::{What, Wish, draw};
+    use palpate_cases::{Truth, What, Wish, draw};
 
     #[test]
     fn a_seal_holds_what_was_sealed_and_nothing_else() {

@@ -2,9 +2,10 @@
 
 use super::aim::{Aim, aims, beside};
 use super::interval::of_share;
+use super::recorded::table::line;
 use super::score::Challenge;
 
-/// What begins the part of a README that the command writes.
+/// What begins the part of a README or page of the documentation that the command writes.
 pub const BEGIN: &str = "<!-- written by `palpate challenge --publish`; not by hand -->";
 /// What ends it.
 pub const END: &str = "<!-- end of what `palpate challenge` writes -->";
@@ -16,13 +17,23 @@ pub fn table(challenge: &Challenge) -> String {
         "Seed {}, {} cases, answers sealed by SHA-256 `{}` before the first diagnosis.\n\n",
         challenge.seed, challenge.cases, challenge.sealed_sha256
     );
-    text += "| concealed | | of | share (95 % interval) | aim |\n|---|---|---|---|---|\n";
+    if challenge.cases > 0 {
+        text += &drawn(challenge);
+    }
+    if let Some(recorded) = &challenge.recorded {
+        text += &format!("\n{}\n", line(recorded));
+    }
+    challenge.left_out.iter().for_each(|what| text += &format!("\nLeft out: {what}\n"));
+    text
+}
+
+/// The cases that were drawn: a line each, and the figures that are no shares.
+fn drawn(challenge: &Challenge) -> String {
+    let mut text = "| concealed | | of | share (95 % interval) | aim |\n|---|---|---|---|---|\n".to_owned();
     for Aim { what, hits, of, aim, .. } in aims(challenge) {
         text += &format!("| {what} | {hits} | {of} | {} | {aim} |\n", percent(hits, of));
     }
-    text += &format!("\n{}\n", beside(challenge));
-    challenge.left_out.iter().for_each(|what| text += &format!("\nLeft out: {what}\n"));
-    text
+    text + &format!("\n{}\n", beside(challenge))
 }
 
 /// "92 % (81 to 97 %)"; nothing where there is no case.

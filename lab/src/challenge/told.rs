@@ -13,6 +13,16 @@ pub struct Told {
     pub rivals: Vec<Rival>,
     /// How well the models fit.
     pub fit: Fit,
+    /// What the recordings themselves showed, and what limits the answer.
+    #[serde(default)]
+    pub findings: Vec<Finding>,
+}
+
+/// Something to know.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Finding {
+    /// In words.
+    pub text: String,
 }
 
 /// A named effect.
@@ -47,6 +57,8 @@ pub struct Rival {
 /// Root mean squares on data that no fit saw.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Fit {
+    /// "N" or "N m".
+    pub unit: String,
     /// What the sensors leave.
     pub noise_floor: Option<f64>,
     /// The nominal physics, values refitted.
