@@ -18,6 +18,10 @@ pub struct Track {
     pub velocity: Vec<f64>,
     /// Its acceleration.
     pub acceleration: Vec<f64>,
+    /// Rate of the acceleration.
+    pub jerk: Vec<f64>,
+    /// Rate of the jerk.
+    pub snap: Vec<f64>,
     /// Whether the tool stands still as far as can be seen, 0 or 1.
     pub still: Vec<f64>,
     /// What of the velocity is noise.
@@ -28,6 +32,8 @@ pub struct Track {
     pub force: Option<Vec<f64>>,
     /// Its rate.
     pub force_rate: Option<Vec<f64>>,
+    /// Rate of that.
+    pub force_bend: Option<Vec<f64>>,
     /// Effort, held from its row to the next.
     pub effort: Option<Vec<f64>>,
     /// Rate of the effort.
@@ -110,10 +116,13 @@ impl Track {
             still: still.collect(),
             velocity,
             acceleration,
+            jerk: lens.jerk(&raw.position),
+            snap: lens.snap(&raw.position),
             speed_noise,
             pace: raw.figures.position.resolution / lens.blur,
             force: raw.force.as_ref().map(|force| lens.level(force)),
             force_rate: raw.force.as_ref().map(|force| lens.slope(force)),
+            force_bend: raw.force.as_ref().map(|force| lens.bend(force)),
             effort: raw.effort.as_ref().map(|effort| lens.held(effort)),
             effort_rate: raw.effort.as_ref().map(|effort| lens.held_slope(effort)),
             command: None,

@@ -18,6 +18,10 @@ pub struct Push {
     pub velocity: f64,
     /// Its acceleration; zero in a simulation, where it is what is asked for.
     pub acceleration: f64,
+    /// Rate of the acceleration; zero in a simulation.
+    pub jerk: f64,
+    /// Rate of the jerk; zero in a simulation.
+    pub snap: f64,
     /// Width of the smoothing filter, s; zero in a simulation.
     pub blur: f64,
     /// What of the velocity is noise, m/s.
@@ -26,6 +30,8 @@ pub struct Push {
     pub still: f64,
     /// Contact force on the tool, positive when the tool pushes.
     pub force: f64,
+    /// Second derivative of the contact force; zero in a simulation.
+    pub force_bend: f64,
     /// What reaches the tool of the commanded effort.
     pub effort: f64,
     /// Rate of the effort as it is seen through the filter; not used in a simulation, where an effort is held.

@@ -111,9 +111,12 @@ impl<'a> Bench<'a> {
             speed_noise: noise * slope_noise,
             position,
             velocity,
+            jerk: slope(&acceleration, lens.step()),
+            snap: slope(&slope(&acceleration, lens.step()), lens.step()),
             acceleration,
             force: None,
             force_rate: None,
+            force_bend: None,
             effort: None,
             effort_rate: None,
             command: None,
@@ -148,7 +151,9 @@ impl<'a> Bench<'a> {
         let Claim { model, values, .. } = &self.answer;
         let borne = model.contact_force(values, 0, track, bilateral);
         let force = model.reading(values, 0, track, &borne);
-        track.force_rate = Some(slope(&force, track.step));
+        let rate = slope(&force, track.step);
+        track.force_bend = Some(slope(&rate, track.step));
+        track.force_rate = Some(rate);
         track.force = Some(force);
     }
 

@@ -55,6 +55,17 @@ impl Effect for TransmissionCompliance {
 
     fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
         let motor = values[1] * push.inertia;
+        if push.blur > 0.0 {
+            // memory: bend of what the tool's side bore an instant ago, whether it is known.
+            // The motor leads the tool by T / k, later by c / k, and T is what the tool's side bears: its acceleration is seen,
+            // not followed. A motor that is followed swings at its own rate with the noise of the tool's position.
+            let softness = motor / values[0].max(f64::MIN_POSITIVE);
+            let bend = (push.inertia - motor) * push.snap + push.viscous * push.jerk + push.force_bend;
+            let late = if memory[1] > 0.0 { 2.0 * values[2] * softness.sqrt() / push.step } else { 0.0 };
+            push.resistance += softness * (bend - late * (bend - memory[0]));
+            (memory[0], memory[1]) = (bend, 1.0);
+            return;
+        }
         let damping = 2.0 * values[2] * (values[0] * motor).max(0.0).sqrt();
         Link { stiffness: values[0], damping, inertia: motor, gap: 0.0 }.carry(memory, push);
     }
