@@ -48,7 +48,9 @@ pub fn estimates(study: &Study, stand: &Stand, judgement: &Judgement) -> Vec<Est
             // one: what they are biased by is not what the recording is.
             let fitted = if cut { stand.values[at] } else { stand.origin[at] - mean };
             let value = fitted.clamp(low, high);
-            Estimate { value, ends: [(value - half).max(low), (value + half).min(high)] }
+            // What was fitted is not excluded by what twins say of its bias: they are only as good as the law.
+            let (first, last) = ((value - half).min(stand.values[at]), (value + half).max(stand.values[at]));
+            Estimate { value, ends: [first.max(low), last.min(high)] }
         })
         .collect()
 }
