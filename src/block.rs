@@ -67,8 +67,8 @@ pub struct BlockState<M> {
 /// What a law makes of the window's sums.
 #[derive(Debug, Clone, Copy)]
 pub struct Move {
-    /// How the estimate is to move.
-    pub step: Impedance,
+    /// Where the estimate is to go.
+    pub to: Impedance,
     /// Variance per sample of the law's own criterion.
     pub noise_variance: f32,
     /// What was out of the ordinary.
@@ -81,19 +81,28 @@ pub struct View<'a, M: Memory> {
     pub config: &'a BlockConfig,
     pub recent: Recent<'a>,
     pub memory: &'a M,
-    /// The estimate that `local` is summed about.
     pub estimate: Impedance,
+    pub samples: f32,
+    /// What `local` is summed about.
+    pub centre: Impedance,
     pub local: M::Local,
-    /// What least squares would do.
+    /// What least squares would do, from the centre.
     pub solution: Solution,
 }
 
 impl<'a, M: Memory> View<'a, M> {
     #[inline(always)]
     pub fn of(config: &'a BlockConfig, memory: &'a M, recent: Recent<'a>, estimate: Impedance) -> Self {
-        let local = memory.local(recent, estimate);
-        let solution = Solution::of(local.second(), config, estimate);
-        Self { config, recent, memory, estimate, local, solution }
+        let (centre, local) = memory.local(recent, estimate);
+        let samples = recent.len() as f32;
+        let solution = Solution::of(local.second(), samples, config, centre);
+        Self { config, recent, memory, estimate, samples, centre, local, solution }
+    }
+
+    /// The least-squares solution of the window.
+    #[inline(always)]
+    pub fn least_squares(&self) -> Impedance {
+        self.centre.moved(1.0, self.solution.correction)
     }
 }
 
@@ -122,7 +131,7 @@ impl<C: Criterion> BlockLaw<C> {
         state.memory.follow(&self.config, recent, state.estimate);
         if recent.len() >= usize::from(self.config.minimum_fill) {
             let view = View::of(&self.config, &state.memory, recent, state.estimate);
-            let moved = state.estimate.moved(1.0, self.criterion.advance(&view).step);
+            let moved = self.criterion.advance(&view).to;
             if moved.is_finite() {
                 state.estimate = moved;
             }
@@ -157,12 +166,10 @@ impl<C: Criterion> Law for BlockLaw<C> {
             return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
         }
         let view = View::of(&self.config, &state.memory, recent, state.estimate);
-        let Move { step, noise_variance, flags } = self.criterion.advance(&view);
+        let Move { to, noise_variance, flags } = self.criterion.advance(&view);
         let (sums, solution) = (view.local.second(), &view.solution);
-        let moved = state.estimate.moved(1.0, step);
         // Not at all where that would leave the finite numbers.
-        let taken = if moved.is_finite() { step } else { Impedance::ZERO };
-        let estimate = if moved.is_finite() { moved } else { state.estimate };
+        let estimate = if to.is_finite() { to } else { state.estimate };
         state.estimate = estimate;
         Step {
             estimate,
@@ -170,9 +177,9 @@ impl<C: Criterion> Law for BlockLaw<C> {
             confidence: Confidence {
                 noise: solution.inverse.scaled(noise_variance),
                 noise_gain: solution.inverse,
-                remainder: solution.correction.moved(-1.0, taken),
+                remainder: view.least_squares().moved(-1.0, estimate),
                 offset_gain: solution.inverse.times(sums.regressor),
-                samples: sums.samples,
+                samples: view.samples,
             },
             fill,
             excitation: sums.regressors.independence(),

@@ -114,8 +114,8 @@ impl Criterion for LeastMeanFourth {
         let powers = Powers::of(view);
         let search = powers.and_then(|powers| search(self.direction, view, &powers));
         Move {
-            step: search.map_or(Impedance::ZERO, |s| Impedance::ZERO.moved(s.length, s.direction)),
-            noise_variance: powers.map_or(0.0, |powers| powers.noise_variance(view.local.samples)),
+            to: search.map_or(view.estimate, |s| view.estimate.moved(s.length, s.direction)),
+            noise_variance: powers.map_or(0.0, |powers| powers.noise_variance(view.samples)),
             flags: self.direction.flags(&view.solution),
         }
     }

@@ -29,8 +29,8 @@ pub trait Memory: Copy + Default + core::fmt::Debug {
     /// Takes in the newest of `recent`, which is the law's own window; `estimate` is the estimate before it.
     fn follow(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance);
 
-    /// The window's sums about `estimate`.
-    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Self::Local;
+    /// The window's sums, and what they were taken about: `estimate`, or whatever near it comes cheaper.
+    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> (Impedance, Self::Local);
 }
 
 /// Nothing is remembered: the window is summed anew at every update.
@@ -42,8 +42,8 @@ impl Memory for Anew {
 
     fn follow(&mut self, _: &BlockConfig, _: Recent<'_>, _: Impedance) {}
 
-    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Sums {
-        Sums::over(recent, estimate)
+    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> (Impedance, Sums) {
+        (estimate, Sums::over(recent, estimate))
     }
 }
 

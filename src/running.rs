@@ -111,7 +111,7 @@ impl<M: Moments> Running<M> {
         let (e, sums) = (newest.misfit(self.next.centre), self.next.moments.second());
         let square = e * e;
         let out = if self.covered >= SOME {
-            square * sums.samples > FAR * sums.misfit_energy
+            square * f32::from(self.covered) > FAR * sums.misfit_energy
         } else {
             !self.apart && self.level > 0.0 && square > FAR * self.level
         };
@@ -120,7 +120,7 @@ impl<M: Moments> Running<M> {
             return;
         }
         if out && !self.apart && self.covered >= SOME {
-            self.level = sums.misfit_energy / sums.samples;
+            self.level = sums.misfit_energy / f32::from(self.covered);
         }
         self.apart = !back;
         if self.covered < self.fill {
@@ -158,7 +158,7 @@ impl<M: Moments> Running<M> {
     /// Rebuilds `next` where another centre suits it better.
     fn look(&mut self, config: &BlockConfig) {
         self.since = 0;
-        if let Some(centre) = better(&self.next, config) {
+        if let Some(centre) = better(&self.next, self.covered, config) {
             self.rebuilt = Run::about(centre);
             (self.caught_up, self.rebuilding, self.apart) = (0, true, false);
         }
@@ -166,9 +166,9 @@ impl<M: Moments> Running<M> {
 }
 
 /// The least-squares solution of `run`, where it explains most of the misfit about the centre.
-fn better<M: Moments>(run: &Run<M>, config: &BlockConfig) -> Option<Impedance> {
+fn better<M: Moments>(run: &Run<M>, samples: u16, config: &BlockConfig) -> Option<Impedance> {
     let sums = run.moments.second();
-    let correction = Solution::of(sums, config, run.centre).correction;
+    let correction = Solution::of(sums, f32::from(samples), config, run.centre).correction;
     let explained = correction.stiffness * sums.misfit.stiffness + correction.damping * sums.misfit.damping;
     let centre = run.centre.moved(1.0, correction);
     (explained > MOST * sums.misfit_energy && centre.is_finite()).then_some(centre)
@@ -187,9 +187,8 @@ impl<M: Moments> Memory for Running<M> {
         if self.covered >= config.window {
             // The tail is empty: the run is the window.
             self.tail = self.next;
-            let sums = self.tail.moments.second();
-            self.level = sums.misfit_energy / sums.samples;
-            self.begin(better(&self.tail, config).unwrap_or(self.tail.centre));
+            self.level = self.tail.moments.second().misfit_energy / f32::from(self.covered);
+            self.begin(better(&self.tail, self.covered, config).unwrap_or(self.tail.centre));
             self.age = 0;
         }
         if self.fill == config.window {
@@ -212,7 +211,14 @@ impl<M: Moments> Memory for Running<M> {
         }
     }
 
-    fn local(&self, _: Recent<'_>, estimate: Impedance) -> M {
+    fn local(&self, _: Recent<'_>, estimate: Impedance) -> (Impedance, M) {
+        (estimate, self.seen_from(estimate))
+    }
+}
+
+impl<M: Moments> Running<M> {
+    /// The window's moments about `estimate`.
+    pub fn seen_from(&self, estimate: Impedance) -> M {
         if self.covered >= self.fill {
             return self.next.seen_from(estimate);
         }
