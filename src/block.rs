@@ -5,7 +5,7 @@ use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_not_negative};
 use crate::flags::Flags;
 use crate::law::Law;
-use crate::memory::{Memory, Moments};
+use crate::memory::{Local, Memory, Moments};
 use crate::prior::Prior;
 use crate::step::Step;
 use crate::sums::Solution;
@@ -83,26 +83,35 @@ pub struct View<'a, M: Memory> {
     pub memory: &'a M,
     pub estimate: Impedance,
     pub samples: f32,
-    /// What `local` is summed about.
-    pub centre: Impedance,
-    pub local: M::Local,
+    pub local: &'a Local<M::Local>,
     /// What least squares would do, from the centre.
     pub solution: Solution,
 }
 
 impl<'a, M: Memory> View<'a, M> {
     #[inline(always)]
-    pub fn of(config: &'a BlockConfig, memory: &'a M, recent: Recent<'a>, estimate: Impedance) -> Self {
-        let (centre, local) = memory.local(recent, estimate);
+    pub fn of(
+        config: &'a BlockConfig,
+        memory: &'a M,
+        recent: Recent<'a>,
+        estimate: Impedance,
+        local: &'a mut Local<M::Local>,
+    ) -> Self {
         let samples = recent.len() as f32;
-        let solution = Solution::of(local.second(), samples, config, centre);
-        Self { config, recent, memory, estimate, samples, centre, local, solution }
+        let mut solution = Solution::of(local.moments.second(), samples, config, local.centre);
+        if !solution.flags.is_empty() && local.centre != estimate {
+            // What is held is held where the estimate is.
+            local.moments = local.moments.shifted(estimate.moved(-1.0, local.centre));
+            local.centre = estimate;
+            solution = Solution::of(local.moments.second(), samples, config, estimate);
+        }
+        Self { config, recent, memory, estimate, samples, local, solution }
     }
 
     /// The least-squares solution of the window.
     #[inline(always)]
     pub fn least_squares(&self) -> Impedance {
-        self.centre.moved(1.0, self.solution.correction)
+        self.local.centre.moved(1.0, self.solution.correction)
     }
 }
 
@@ -130,7 +139,8 @@ impl<C: Criterion> BlockLaw<C> {
         let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
         state.memory.follow(&self.config, recent, state.estimate);
         if recent.len() >= usize::from(self.config.minimum_fill) {
-            let view = View::of(&self.config, &state.memory, recent, state.estimate);
+            let mut local = state.memory.local(recent, state.estimate);
+            let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
             let moved = self.criterion.advance(&view).to;
             if moved.is_finite() {
                 state.estimate = moved;
@@ -165,9 +175,10 @@ impl<C: Criterion> Law for BlockLaw<C> {
             let (confidence, excitation, flags) = (Confidence::NONE, 0.0, Flags::TOO_FEW);
             return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
         }
-        let view = View::of(&self.config, &state.memory, recent, state.estimate);
+        let mut local = state.memory.local(recent, state.estimate);
+        let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
         let Move { to, noise_variance, flags } = self.criterion.advance(&view);
-        let (sums, solution) = (view.local.second(), &view.solution);
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
         // Not at all where that would leave the finite numbers.
         let estimate = if to.is_finite() { to } else { state.estimate };
         state.estimate = estimate;

@@ -97,7 +97,7 @@ const SHARE: f32 = 0.5;
 
 /// How far to go along `u`, in its length; `None` where nothing is excited along it.
 fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
-    let here = &view.local;
+    let here = &view.local.moments;
     let quartic = here.quartic(u);
     if quartic.is_nan() || quartic <= 0.0 {
         return None;
@@ -128,7 +128,7 @@ impl Criterion for LeastMeanFourth {
     type Memory = Running<Fourth>;
 
     fn advance(&self, view: &View<'_, Running<Fourth>>) -> Move {
-        let here = &view.local;
+        let here = &view.local.moments;
         let step = way_down(self.direction, view, here.descent(), here.hessian())
             .and_then(|u| Some((length_along(u, view)?, u)))
             .map_or(Impedance::ZERO, |(length, u)| Impedance::ZERO.moved(length, u));

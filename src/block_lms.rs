@@ -37,8 +37,8 @@ impl<M: Memory> Criterion for LeastMeanSquare<M> {
     type Memory = M;
 
     fn advance(&self, view: &View<'_, M>) -> Move {
-        let (sums, solution) = (view.local.second(), &view.solution);
-        let here = sums.shifted(view.estimate.moved(-1.0, view.centre));
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
+        let here = sums.shifted(view.estimate.moved(-1.0, view.local.centre));
         Move {
             to: view.estimate.moved(1.0, steepest_step(&here)),
             noise_variance: solution.residual_variance(sums, view.samples),

@@ -34,7 +34,7 @@ impl<M: Memory> Criterion for LeastSquares<M> {
     type Memory = M;
 
     fn advance(&self, view: &View<'_, M>) -> Move {
-        let (sums, solution) = (view.local.second(), &view.solution);
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
         Move {
             to: view.least_squares(),
             noise_variance: solution.residual_variance(sums, view.samples),

@@ -15,41 +15,41 @@
 
 use crate::block::BlockConfig;
 use crate::contact::{Impedance, Observation};
-use crate::memory::{Memory, Moments};
+use crate::memory::{Local, Memory, Moments};
 use crate::window::Recent;
 
 /// Entries of a chunk, at most.
-const ENTRIES: u16 = 10;
+const ENTRIES: u32 = 10;
 
 /// Chunks in a window, at most.
-const CHUNKS: u16 = 16;
+const CHUNKS: u32 = 16;
 
 /// The window below which everything is summed anew at every update.
-const SHORTEST: u16 = 8;
+const SHORTEST: u32 = 10;
 
 /// How a window is divided; all zero where it is not.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Division {
-    window: u16,
+    window: u32,
     /// Samples between two entries, even.
-    group: u16,
+    group: u32,
     /// Groups of a chunk.
-    groups: u16,
+    groups: u32,
+    /// Samples of a chunk.
+    chunk: u32,
 }
 
 impl Division {
     /// The smallest chunks that are no more in number than a chunk has samples, nor than there is room for.
     fn of(window: u16) -> Self {
-        let room = |chunk: u16| u32::from(chunk) * u32::from(chunk.min(CHUNKS)) >= u32::from(window);
-        match (2..=ENTRIES).find(|groups| room(2 * groups)) {
-            _ if window < SHORTEST => Self { window, ..Self::default() },
-            Some(groups) => Self { window, group: 2, groups },
-            None => Self { window, group: 2 * window.div_ceil(2 * ENTRIES * CHUNKS), groups: ENTRIES },
-        }
-    }
-
-    fn chunk(self) -> u16 {
-        self.group * self.groups
+        let window = u32::from(window);
+        let room = |chunk: u32| chunk * chunk.min(CHUNKS) >= window;
+        let (group, groups) = match (2..=ENTRIES).find(|groups| room(2 * groups)) {
+            _ if window < SHORTEST => (0, 0),
+            Some(groups) => (2, groups),
+            None => (2 * window.div_ceil(2 * ENTRIES * CHUNKS), ENTRIES),
+        };
+        Self { window, group, groups, chunk: group * groups }
     }
 }
 
@@ -58,7 +58,7 @@ impl Division {
 pub struct Queue<M> {
     division: Division,
     /// Samples in the window.
-    fill: u16,
+    fill: u32,
     /// What `middle`, `front` and the entries in use are summed about.
     centre: Impedance,
     /// What the stack is being turned to, and the entries of the next chunk are summed about.
@@ -72,31 +72,31 @@ pub struct Queue<M> {
     /// A ring, the next chunk to be drained at `head`.
     chunks: [M; CHUNKS as usize],
     /// Samples in `front`.
-    newest: u16,
+    newest: u32,
     /// Samples of the oldest chunk that have left.
-    drained: u16,
+    drained: u32,
     /// The entry in use, and how many samples come before it.
-    entry: u16,
-    single: u16,
-    head: u16,
+    entry: u32,
+    single: u32,
+    head: u32,
     /// Chunks of the stack that are not drained yet, those complete since, and those turned so far where it is being turned.
-    stacked: u16,
-    complete: u16,
-    turned: u16,
+    stacked: u32,
+    complete: u32,
+    turned: u32,
     turning: bool,
     /// The entries in use lie in reverse.
     reversed: bool,
 }
 
-fn slot(index: u16) -> usize {
-    usize::from(index % CHUNKS)
+fn slot(index: u32) -> usize {
+    (index % CHUNKS) as usize
 }
 
 impl<M: Moments> Queue<M> {
     /// A window of `division` in which nothing but emptiness has passed for so long that `coming` samples later it is as full
     /// of it as it can be.
-    fn begin(&mut self, division: Division, centre: Impedance, coming: u16) {
-        let chunk = division.chunk();
+    fn begin(&mut self, division: Division, centre: Impedance, coming: u32) {
+        let chunk = division.chunk;
         let before = division.window - coming;
         let stacked = before.div_ceil(chunk) - 1;
         let drained = (stacked + 1) * chunk - before;
@@ -112,19 +112,19 @@ impl<M: Moments> Queue<M> {
             *self = Self::default();
         }
         let division = Division::of(config.window);
-        let count = u16::try_from(recent.len()).unwrap_or(u16::MAX);
+        let count = recent.len() as u32;
         if division.group == 0 {
             (self.division, self.fill) = (division, count);
             return;
         }
         // While the next chunk is empty, too, there is nothing to be summed ahead.
-        let simple = count.min(division.window - 2 * division.chunk());
+        let simple = count.min(division.window - 2 * division.chunk);
         self.begin(division, centre, simple);
         let mut seen = 0;
         recent.for_each(|o| {
             seen += 1;
             if seen > simple {
-                self.prepare(recent, usize::from(count - seen));
+                self.prepare(recent, (count - seen) as usize);
                 self.take(o);
                 self.drain(centre);
             } else {
@@ -137,17 +137,21 @@ impl<M: Moments> Queue<M> {
     /// Puts the newest sample in.
     #[inline(always)]
     fn take(&mut self, o: &Observation) {
-        self.front = self.front.with(&M::of(o, o.misfit(self.centre)));
-        self.newest += 1;
-        if self.newest == self.division.chunk() {
+        // At the update after the one that filled it, which has a chunk to begin where the window is a multiple of the chunk.
+        if self.newest == self.division.chunk {
             self.complete();
         }
+        self.front = self.front.with(&M::of(o, o.misfit(self.centre)));
+        self.newest += 1;
     }
 
     /// The newest chunk is complete.
     fn complete(&mut self) {
-        self.middle = self.middle.with(&self.front);
-        let kept = if self.turning { self.front.shifted(self.turn()) } else { self.front };
+        let mut kept = self.front;
+        self.middle = self.middle.with(&kept);
+        if self.turning {
+            kept = kept.shifted(self.turn());
+        }
         self.after = self.after.with(&kept);
         if let Some(chunk) = self.chunks.get_mut(slot(self.head + self.stacked + self.complete)) {
             *chunk = kept;
@@ -172,7 +176,7 @@ impl<M: Moments> Queue<M> {
             self.entry += 1;
             self.single = self.division.group - 1;
         }
-        if self.drained == self.division.chunk() {
+        if self.drained == self.division.chunk {
             self.next_chunk(estimate);
         }
     }
@@ -188,12 +192,13 @@ impl<M: Moments> Queue<M> {
         }
         self.head = (self.head + 1) % CHUNKS;
         self.stacked -= 1;
-        self.middle = self.after;
         if self.stacked > 0 {
-            let stack = self.chunks.get(slot(self.head)).copied().unwrap_or_default();
-            self.middle = self.middle.with(&stack);
+            if let Some(stack) = self.chunks.get(slot(self.head)) {
+                self.middle = self.after.with(stack);
+            }
             return;
         }
+        self.middle = self.after;
         (self.stacked, self.complete) = (self.complete, 0);
         self.after = M::default();
         (self.turning, self.turned, self.next_centre) = (true, 0, estimate);
@@ -213,18 +218,16 @@ impl<M: Moments> Queue<M> {
 
     /// Two more samples of the next chunk.
     fn sum_backwards(&mut self, recent: Recent<'_>, later: usize) {
-        if self.drained == 1 {
-            self.suffix = M::default();
+        let mut suffix = if self.drained == 1 { M::default() } else { self.suffix };
+        let ahead = self.division.window - 2 * (self.division.chunk - self.drained);
+        for o in recent.pair_before_newest(ahead as usize + later) {
+            suffix = suffix.with(&M::of(&o, o.misfit(self.next_centre)));
         }
-        let ahead = self.division.window - 2 * (self.division.chunk() - self.drained);
-        for back in [ahead, ahead + 1] {
-            let o = recent.before_newest(usize::from(back) + later).unwrap_or_default();
-            self.suffix = self.suffix.with(&M::of(&o, o.misfit(self.next_centre)));
-        }
+        self.suffix = suffix;
         if self.single == 1 {
             let place = if self.reversed { self.division.groups - self.entry } else { self.entry - 1 };
-            if let Some(entry) = self.entries.get_mut(usize::from(place)) {
-                *entry = self.suffix;
+            if let Some(entry) = self.entries.get_mut(place as usize) {
+                *entry = suffix;
             }
         }
     }
@@ -253,7 +256,7 @@ impl<M: Moments> Queue<M> {
             return None;
         }
         let place = if self.reversed { self.division.groups - 1 - self.entry } else { self.entry };
-        self.entries.get(usize::from(place))
+        self.entries.get(place as usize)
     }
 }
 
@@ -262,8 +265,8 @@ impl<M: Moments> Memory for Queue<M> {
 
     #[inline(always)]
     fn follow(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
-        let expected = if self.fill < config.window { self.fill + 1 } else { config.window };
-        if self.fill == 0 || self.division.window != config.window || recent.len() != usize::from(expected) {
+        let expected = if self.fill < self.division.window { self.fill + 1 } else { self.fill };
+        if self.fill == 0 || recent.len() != expected as usize {
             self.anew(config, recent, estimate);
             return;
         }
@@ -276,22 +279,22 @@ impl<M: Moments> Memory for Queue<M> {
     }
 
     #[inline(always)]
-    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> (Impedance, M) {
+    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Local<M> {
         if self.division.group == 0 {
             let mut sums = M::default();
             recent.for_each(|o| sums = sums.with(&M::of(o, o.misfit(estimate))));
-            return (estimate, sums);
+            return Local { centre: estimate, moments: sums };
         }
         let mut sums = self.front.with(&self.middle);
         if let Some(entry) = self.entry() {
             sums = sums.with(entry);
         }
-        for younger in 0..self.single {
-            let back = usize::from(self.division.window - 1 - younger);
-            let o = recent.before_newest(back).unwrap_or_default();
+        // Those of them that are not from before the window began to fill.
+        for index in 0..(self.single + self.fill).saturating_sub(self.division.window) {
+            let o = recent.after_oldest(index as usize).unwrap_or_default();
             sums = sums.with(&M::of(&o, o.misfit(self.centre)));
         }
-        (self.centre, sums)
+        Local { centre: self.centre, moments: sums }
     }
 }
 
@@ -321,8 +324,8 @@ mod tests {
             // Whole numbers as well, so that every change of the centre is exact.
             let estimate = Impedance { stiffness: f32::from(k % 3), damping: f32::from(k % 2) };
             queue.follow(&config, recent, estimate);
-            let (centre, sums) = queue.local(recent, estimate);
-            assert_eq!(sums, Sums::over(recent, centre), "window {window}, {known} known, update {k}");
+            let Local { centre, moments } = queue.local(recent, estimate);
+            assert_eq!(moments, Sums::over(recent, centre), "window {window}, {known} known, update {k}");
         }
     }
 
@@ -341,12 +344,12 @@ mod tests {
 
     #[test]
     fn every_window_is_divided_into_what_there_is_room_for() {
-        for window in SHORTEST..=u16::MAX {
+        for window in SHORTEST as u16..=u16::MAX {
             let Division { group, groups, .. } = Division::of(window);
-            let chunk = u32::from(group) * u32::from(groups);
+            let chunk = group * groups;
             assert!(group >= 2 && group.is_multiple_of(2) && (2..=ENTRIES).contains(&groups), "{window}");
             let chunks = u32::from(window).div_ceil(chunk);
-            assert!(chunks <= u32::from(CHUNKS) && chunks <= chunk && 2 * chunk <= u32::from(window), "{window}");
+            assert!(chunks <= CHUNKS && chunks <= chunk && 2 * chunk < u32::from(window), "{window}");
         }
     }
 }

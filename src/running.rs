@@ -14,7 +14,7 @@
 
 use crate::block::BlockConfig;
 use crate::contact::{Impedance, Observation};
-use crate::memory::{Memory, Moments};
+use crate::memory::{Local, Memory, Moments};
 use crate::sums::Solution;
 use crate::window::Recent;
 
@@ -43,6 +43,7 @@ impl<M: Moments> Run<M> {
     }
 
     /// The moments about `estimate`.
+    #[inline(always)]
     fn seen_from(&self, estimate: Impedance) -> M {
         self.moments.shifted(estimate.moved(-1.0, self.centre))
     }
@@ -211,20 +212,24 @@ impl<M: Moments> Memory for Running<M> {
         }
     }
 
-    fn local(&self, _: Recent<'_>, estimate: Impedance) -> (Impedance, M) {
-        (estimate, self.seen_from(estimate))
+    fn local(&self, _: Recent<'_>, estimate: Impedance) -> Local<M> {
+        Local { centre: estimate, moments: self.seen_from(estimate) }
     }
 }
 
 impl<M: Moments> Running<M> {
     /// The window's moments about `estimate`.
+    #[inline(never)]
     pub fn seen_from(&self, estimate: Impedance) -> M {
-        if self.covered >= self.fill {
-            return self.next.seen_from(estimate);
+        let mut moments = self.next.moments;
+        if self.covered < self.fill {
+            let tail = if self.tail.centre == self.next.centre {
+                self.tail.moments
+            } else {
+                self.tail.seen_from(self.next.centre)
+            };
+            moments = moments.with(&tail);
         }
-        if self.tail.centre == self.next.centre {
-            return self.tail.moments.with(&self.next.moments).shifted(estimate.moved(-1.0, self.tail.centre));
-        }
-        self.tail.seen_from(estimate).with(&self.next.seen_from(estimate))
+        moments.shifted(estimate.moved(-1.0, self.next.centre))
     }
 }
