@@ -223,12 +223,10 @@ impl<M: Moments> Running<M> {
     pub fn seen_from(&self, estimate: Impedance) -> M {
         let mut moments = self.next.moments;
         if self.covered < self.fill {
-            let tail = if self.tail.centre == self.next.centre {
-                self.tail.moments
-            } else {
-                self.tail.seen_from(self.next.centre)
-            };
-            moments = moments.with(&tail);
+            if self.tail.centre != self.next.centre {
+                return self.tail.seen_from(estimate).with(&self.next.seen_from(estimate));
+            }
+            moments = moments.with(&self.tail.moments);
         }
         moments.shifted(estimate.moved(-1.0, self.next.centre))
     }
