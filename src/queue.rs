@@ -107,6 +107,8 @@ impl<M: Moments> Queue<M> {
     }
 
     /// A window that was not followed sample by sample: all of it, about `centre`.
+    #[cold]
+    #[inline(never)]
     fn anew(&mut self, config: &BlockConfig, recent: Recent<'_>, centre: Impedance) {
         if self.fill > 0 {
             *self = Self::default();

@@ -92,13 +92,15 @@ pub struct Running<M> {
 
 impl<M: Moments> Running<M> {
     /// A window that was not followed sample by sample: all of it, about `centre`.
-    fn anew(recent: Recent<'_>, centre: Impedance) -> Self {
-        let mut running = Self { next: Run::about(centre), ..Self::default() };
-        recent.for_each(|o| running.next.add(o));
-        running.oldest = recent.oldest().unwrap_or_default();
-        running.fill = u16::try_from(recent.len()).unwrap_or(u16::MAX);
-        running.covered = running.fill;
-        running
+    #[cold]
+    #[inline(never)]
+    fn anew(&mut self, recent: Recent<'_>, centre: Impedance) {
+        *self = Self::default();
+        self.begin(centre);
+        recent.for_each(|o| self.next.add(o));
+        self.oldest = recent.oldest().unwrap_or_default();
+        self.fill = u16::try_from(recent.len()).unwrap_or(u16::MAX);
+        self.covered = self.fill;
     }
 
     /// `next` begins again, and is not being rebuilt.
@@ -117,11 +119,17 @@ impl<M: Moments> Running<M> {
             !self.apart && self.level > 0.0 && square > FAR * self.level
         };
         let back = self.apart && square <= FAR * self.level;
-        if !out && !back {
-            return;
+        if out || back {
+            self.split(out && !self.apart, back);
         }
-        if out && !self.apart && self.covered >= SOME {
-            self.level = sums.misfit_energy / f32::from(self.covered);
+    }
+
+    /// The run so far joins the tail; the sample that comes is the `first` that is out, another, or the first that is `back`.
+    #[cold]
+    #[inline(never)]
+    fn split(&mut self, first: bool, back: bool) {
+        if first && self.covered >= SOME {
+            self.level = self.next.moments.second().misfit_energy / f32::from(self.covered);
         }
         self.apart = !back;
         if self.covered < self.fill {
@@ -134,6 +142,7 @@ impl<M: Moments> Running<M> {
     }
 
     /// Adds the newest sample to what is rebuilt, and one more of the ring; two where the contact is young.
+    #[inline(never)]
     fn catch_up(&mut self, newest: &Observation, recent: Recent<'_>) {
         self.rebuilt.add(newest);
         self.caught_up += 1;
@@ -151,12 +160,22 @@ impl<M: Moments> Running<M> {
         }
     }
 
+    /// The tail is empty, and the run is the window.
+    #[inline(never)]
+    fn swap(&mut self, config: &BlockConfig) {
+        self.tail = self.next;
+        self.level = self.tail.moments.second().misfit_energy / f32::from(self.covered);
+        self.begin(better(&self.tail, self.covered, config).unwrap_or(self.tail.centre));
+        self.age = 0;
+    }
+
     /// Updates from one look to the next.
     fn patience(&self, config: &BlockConfig) -> u16 {
         if self.fill < LOOK { SOME / 2 } else { LOOK.min(config.window / 4).max(SOME) }
     }
 
     /// Rebuilds `next` where another centre suits it better.
+    #[inline(never)]
     fn look(&mut self, config: &BlockConfig) {
         self.since = 0;
         if let Some(centre) = better(&self.next, self.covered, config) {
@@ -181,16 +200,12 @@ impl<M: Moments> Memory for Running<M> {
     fn follow(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
         let expected = if self.fill < config.window { self.fill + 1 } else { config.window };
         if self.fill == 0 || recent.len() != usize::from(expected) {
-            *self = Self::anew(recent, estimate);
+            self.anew(recent, estimate);
             return;
         }
         let newest = recent.newest().unwrap_or_default();
         if self.covered >= config.window {
-            // The tail is empty: the run is the window.
-            self.tail = self.next;
-            self.level = self.tail.moments.second().misfit_energy / f32::from(self.covered);
-            self.begin(better(&self.tail, self.covered, config).unwrap_or(self.tail.centre));
-            self.age = 0;
+            self.swap(config);
         }
         if self.fill == config.window {
             let oldest = self.oldest;

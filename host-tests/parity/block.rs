@@ -6,13 +6,13 @@ use palpate::{BlockConfig, BlockLeastSquares, Flags, Law, Recent, direct};
 
 const EVERY: usize = 11;
 
-/// Multiples of what rounding may do to a window. Running sums about a centre that is not the estimate itself lose three
-/// bits more than a window that is summed anew.
+/// Multiples of what rounding may do to a window. Sums about a centre that is not the estimate itself lose one
+/// bit more than a window that is summed anew about the estimate.
 const ANEW: f64 = 4.0;
-const RUNNING: f64 = 32.0;
+const RUNNING: f64 = 8.0;
 
-/// A window of ten is over before its sums have found a centre.
-const RUNNING_SHORT: f64 = 128.0;
+/// A window of ten is over before its sums have a near centre.
+const RUNNING_SHORT: f64 = 16.0;
 
 fn running(name: &'static str, window: u16, flat: [f64; 2], growth: f64) {
     agrees(name, &BlockLeastSquares::new(BlockConfig::of(window)).expect("sound settings"), flat, growth);
