@@ -63,9 +63,9 @@ impl Ewrls {
 }
 
 impl Ewrls {
-    /// Moves the estimate and its covariance by one observation, and nothing else: no interval, fill or excitation, at about
-    /// a third of the cost of [`Law::update`]. A state that was moved by it has no intervals to tell until it is forgotten.
-    /// Returns the innovation, in internal units of force.
+    /// Moves the estimate and its covariance by one observation, and nothing else: no interval, fill or excitation, at
+    /// less than a fifth of the instructions of [`Law::update`]. A state that was moved by it has no intervals to tell until
+    /// it is forgotten. Returns the innovation, in internal units of force.
     pub fn learn(&self, state: &mut RecursiveState, o: &Observation) -> f32 {
         let innovation = o.misfit(state.estimate);
         let mut covariance = state.covariance;

@@ -10,7 +10,7 @@
 //!
 //! While one chunk is drained, the entries of the next are summed backwards from the ring, two samples at every other update,
 //! each into the place of an entry that is no longer needed. When the last chunk of the stack is being drained, the chunks
-//! that are complete become the next stack: they are turned into suffix sums in place, two at every other update. They are
+//! that are complete become the next stack: they are turned into suffix sums in place, some at every other update. They are
 //! then seen about the latest estimate, too.
 
 use crate::block::BlockConfig;
@@ -24,8 +24,8 @@ const ENTRIES: u32 = 10;
 /// Chunks in a window, at most.
 const CHUNKS: u32 = 16;
 
-/// The window below which everything is summed anew at every update.
-const SHORTEST: u32 = 10;
+/// The window below which everything is summed anew at every update, which costs less there.
+const SHORTEST: u32 = 16;
 
 /// How a window is divided; all zero where it is not.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -214,7 +214,10 @@ impl<M: Moments> Queue<M> {
             self.sum_backwards(recent, later);
         } else if self.turning {
             self.turn_chunk();
-            self.turn_chunk();
+            // The first time a chunk may have been completed as well. There are fewer than a chunk has samples.
+            if self.drained > 0 {
+                self.turn_chunk();
+            }
         }
     }
 
@@ -339,8 +342,8 @@ mod tests {
         for known in [1, 19, 40, 259, 260, 261, 280, 299, 300, 400] {
             follows(300, known, 1000);
         }
-        for known in 1..=20 {
-            follows(10, known, 60);
+        for known in 1..=32 {
+            follows(16, known, 90);
         }
     }
 

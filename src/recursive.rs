@@ -77,7 +77,13 @@ impl RecursiveState {
 
     /// The same where nothing is out of the ordinary: both are finite, and the covariance needs no limit. Else nothing is taken.
     #[inline(always)]
-    pub(crate) fn commit_plain(&mut self, gain: Impedance, innovation: f32, covariance: Covariance, limit: f32) -> bool {
+    pub(crate) fn commit_plain(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        limit: f32,
+    ) -> bool {
         let estimate = self.estimate.moved(innovation, gain);
         // A sum that is finite has no part that is not.
         let total = estimate.stiffness + estimate.damping + covariance.total();

@@ -60,7 +60,9 @@ pub fn run(recording: &Recording, mut gauge: Gauge) -> Result<(), Fault> {
         let bytes = usize::from(window) * size_of::<Observation>();
         let last = usize::from(window);
         gauge.case("nalgebra_window", window, bytes, 0)?;
-        each(recording, |recent| pass(&mut gauge, &mut |recent: Recent<'_>| nalgebra_window(recent.last(last)), recent))?;
+        each(recording, |recent| {
+            pass(&mut gauge, &mut |recent: Recent<'_>| nalgebra_window(recent.last(last)), recent)
+        })?;
     }
     Ok(())
 }
