@@ -1,8 +1,8 @@
 //! The window's sums at a cost that does not depend on its length, and from which nothing is ever taken off again.
 //!
 //! A sum that samples are taken off keeps the rounding of what has left. Here a sum only grows, and is dropped as a whole: the
-//! queue of two stacks (Tangwongsan, Hirzel, Schneider, Low-Latency Sliding-Window Aggregation, 2017), with samples
-//! taken in chunks so that it needs neither memory nor time in proportion to the window. From the oldest sample on the window is
+//! queue of two stacks (Tangwongsan, Hirzel, Schneider, Low-Latency Sliding-Window Aggregation in Worst-Case Constant Time,
+//! 2017), with samples taken in chunks so that it needs neither memory nor time in proportion to the window. From the oldest sample on the window is
 //!
 //! - what is left of the oldest chunk: one of its own suffix sums (`entries`), and less than a group of single samples;
 //! - the whole chunks after it (`middle`), from suffix sums over chunks (`chunks`) and what was completed since (`after`);
