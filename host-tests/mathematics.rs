@@ -35,6 +35,21 @@ fn the_square_root_is_correctly_rounded() {
 }
 
 #[test]
+fn the_near_square_root_is_near() {
+    let normal = || spread(1e38).filter(|x| *x >= 1e-37);
+    let error = worst(normal().map(|x| (f64::from(math::near_sqrt(x)) / f64::from(x).sqrt() - 1.0).abs()));
+    println!("near_sqrt: worst relative error {error:.2e}");
+    // Half a unit in the last place is 6e-8 of the smallest mantissa.
+    assert!((5e-8..=1.2e-7).contains(&error), "{error:e}");
+    assert_eq!(math::near_sqrt(0.0), 0.0);
+    assert!(math::near_sqrt(f32::INFINITY).is_nan() && math::near_sqrt(f32::NAN).is_nan());
+    // What is less than the range is not told larger than its root by more than rounding.
+    for x in spread(1e-37).filter(|x| *x > 0.0) {
+        assert!(f64::from(math::near_sqrt(x)) <= f64::from(x).sqrt() * 1.001, "{x:e}");
+    }
+}
+
+#[test]
 fn the_cube_root_is_within_one_unit_in_the_last_place() {
     let error = worst(spread(1e38).map(|x| ulps(math::cbrt(x), f64::from(x).cbrt())));
     println!("cbrt: worst error {error:.3} ulp");

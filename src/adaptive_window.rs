@@ -7,7 +7,7 @@ use crate::error::{ConfigError, require};
 use crate::flags::Flags;
 use crate::law::Law;
 use crate::prior::Prior;
-use crate::running::Running;
+use crate::queue::Queue;
 use crate::step::Step;
 use crate::sums::Sums;
 use crate::window::Recent;
@@ -53,7 +53,7 @@ pub struct AdaptiveWindow {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptiveWindowState {
     /// Of the block law.
-    pub block: BlockState<Running<Sums>>,
+    pub block: BlockState<Queue<Sums>>,
     change: ChangeState,
     length: u16,
 }

@@ -5,7 +5,7 @@ use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_not_negative};
 use crate::flags::Flags;
 use crate::law::Law;
-use crate::memory::{Memory, Moments};
+use crate::memory::{Local, Memory, Moments};
 use crate::prior::Prior;
 use crate::step::Step;
 use crate::sums::Solution;
@@ -67,8 +67,8 @@ pub struct BlockState<M> {
 /// What a law makes of the window's sums.
 #[derive(Debug, Clone, Copy)]
 pub struct Move {
-    /// How the estimate is to move.
-    pub step: Impedance,
+    /// Where the estimate is to go.
+    pub to: Impedance,
     /// Variance per sample of the law's own criterion.
     pub noise_variance: f32,
     /// What was out of the ordinary.
@@ -81,19 +81,37 @@ pub struct View<'a, M: Memory> {
     pub config: &'a BlockConfig,
     pub recent: Recent<'a>,
     pub memory: &'a M,
-    /// The estimate that `local` is summed about.
     pub estimate: Impedance,
-    pub local: M::Local,
-    /// What least squares would do.
+    pub samples: f32,
+    pub local: &'a Local<M::Local>,
+    /// What least squares would do, from the centre.
     pub solution: Solution,
 }
 
 impl<'a, M: Memory> View<'a, M> {
     #[inline(always)]
-    pub fn of(config: &'a BlockConfig, memory: &'a M, recent: Recent<'a>, estimate: Impedance) -> Self {
-        let local = memory.local(recent, estimate);
-        let solution = Solution::of(local.second(), config, estimate);
-        Self { config, recent, memory, estimate, local, solution }
+    pub fn of(
+        config: &'a BlockConfig,
+        memory: &'a M,
+        recent: Recent<'a>,
+        estimate: Impedance,
+        local: &'a mut Local<M::Local>,
+    ) -> Self {
+        let samples = recent.len() as f32;
+        let mut solution = Solution::of(local.moments.second(), samples, config, local.centre);
+        if !solution.flags.is_empty() && local.centre != estimate {
+            // What is held is held where the estimate is.
+            local.moments = local.moments.shifted(estimate.moved(-1.0, local.centre));
+            local.centre = estimate;
+            solution = Solution::of(local.moments.second(), samples, config, estimate);
+        }
+        Self { config, recent, memory, estimate, samples, local, solution }
+    }
+
+    /// The least-squares solution of the window.
+    #[inline(always)]
+    pub fn least_squares(&self) -> Impedance {
+        self.local.centre.moved(1.0, self.solution.correction)
     }
 }
 
@@ -121,8 +139,9 @@ impl<C: Criterion> BlockLaw<C> {
         let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
         state.memory.follow(&self.config, recent, state.estimate);
         if recent.len() >= usize::from(self.config.minimum_fill) {
-            let view = View::of(&self.config, &state.memory, recent, state.estimate);
-            let moved = state.estimate.moved(1.0, self.criterion.advance(&view).step);
+            let mut local = state.memory.local(recent, state.estimate);
+            let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
+            let moved = self.criterion.advance(&view).to;
             if moved.is_finite() {
                 state.estimate = moved;
             }
@@ -156,13 +175,12 @@ impl<C: Criterion> Law for BlockLaw<C> {
             let (confidence, excitation, flags) = (Confidence::NONE, 0.0, Flags::TOO_FEW);
             return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
         }
-        let view = View::of(&self.config, &state.memory, recent, state.estimate);
-        let Move { step, noise_variance, flags } = self.criterion.advance(&view);
-        let (sums, solution) = (view.local.second(), &view.solution);
-        let moved = state.estimate.moved(1.0, step);
+        let mut local = state.memory.local(recent, state.estimate);
+        let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
+        let Move { to, noise_variance, flags } = self.criterion.advance(&view);
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
         // Not at all where that would leave the finite numbers.
-        let taken = if moved.is_finite() { step } else { Impedance::ZERO };
-        let estimate = if moved.is_finite() { moved } else { state.estimate };
+        let estimate = if to.is_finite() { to } else { state.estimate };
         state.estimate = estimate;
         Step {
             estimate,
@@ -170,9 +188,9 @@ impl<C: Criterion> Law for BlockLaw<C> {
             confidence: Confidence {
                 noise: solution.inverse.scaled(noise_variance),
                 noise_gain: solution.inverse,
-                remainder: solution.correction.moved(-1.0, taken),
+                remainder: view.least_squares().moved(-1.0, estimate),
                 offset_gain: solution.inverse.times(sums.regressor),
-                samples: sums.samples,
+                samples: view.samples,
             },
             fill,
             excitation: sums.regressors.independence(),

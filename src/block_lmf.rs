@@ -97,7 +97,7 @@ const SHARE: f32 = 0.5;
 
 /// How far to go along `u`, in its length; `None` where nothing is excited along it.
 fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
-    let here = &view.local;
+    let here = &view.local.moments;
     let quartic = here.quartic(u);
     if quartic.is_nan() || quartic <= 0.0 {
         return None;
@@ -105,7 +105,7 @@ fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
     let (cubic, square, slope) = (here.cubic(u), here.square(u), here.slope(u));
     let centre = cubic / quartic;
     let (spread, skew) = if centre * cubic > SHARE * square {
-        let there = view.memory.local(view.recent, view.estimate.moved(centre, u));
+        let there = view.memory.seen_from(view.estimate.moved(centre, u));
         (larger(there.square(u), 0.0), there.slope(u))
     } else {
         (square - centre * cubic, slope - centre * (3.0 * square - 2.0 * (centre * cubic)))
@@ -117,10 +117,10 @@ fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
 /// Variance per sample at the minimum of the fourth power, `E e^6 / (9 (E e^2)^2)`, with the sixth moment of a Gaussian of
 /// the same second and fourth, `E e^6 = 5/3 (E e^4)^2 / E e^2`. For uniform noise that is 1.4 times too much; for rare
 /// spikes too little, by up to a factor of four.
-fn noise_variance(sums: &Sums, cost: f32) -> f32 {
-    let square = sums.misfit_energy / sums.samples;
+fn noise_variance(sums: &Sums, samples: f32, cost: f32) -> f32 {
+    let square = sums.misfit_energy / samples;
     // Never less than Cauchy and Schwarz allow, whatever rounding has left.
-    let kurtosis = larger(cost / (sums.samples * square * square), 1.0);
+    let kurtosis = larger(cost / (samples * square * square), 1.0);
     if square > 0.0 { 5.0 / 27.0 * (kurtosis * kurtosis * square) } else { 0.0 }
 }
 
@@ -128,13 +128,13 @@ impl Criterion for LeastMeanFourth {
     type Memory = Running<Fourth>;
 
     fn advance(&self, view: &View<'_, Running<Fourth>>) -> Move {
-        let here = &view.local;
+        let here = &view.local.moments;
         let step = way_down(self.direction, view, here.descent(), here.hessian())
             .and_then(|u| Some((length_along(u, view)?, u)))
             .map_or(Impedance::ZERO, |(length, u)| Impedance::ZERO.moved(length, u));
         Move {
-            step,
-            noise_variance: noise_variance(here.second(), here.cost()),
+            to: view.estimate.moved(1.0, step),
+            noise_variance: noise_variance(here.second(), view.samples, here.cost()),
             flags: self.direction.flags(&view.solution),
         }
     }

@@ -8,7 +8,7 @@ use crate::error::ConfigError;
 use crate::flags::Flags;
 use crate::math::larger;
 use crate::memory::{Memory, Moments};
-use crate::running::Running;
+use crate::queue::Queue;
 use crate::sums::Sums;
 
 /// `theta += step u` along `u = -g/|g|`, `g = -sum phi e`, where the step minimises `sum (e - step phi'u)^2` over the
@@ -17,7 +17,7 @@ use crate::sums::Sums;
 /// Without the length of g, and in one pass, that is `theta += (d'd / d'Rd) d` with `d = sum phi e`, `R = sum phi phi'`.
 ///
 /// An update costs the same at any window.
-pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<Running<Sums>>>;
+pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<Queue<Sums>>>;
 
 /// `sum (F - phi' theta)^2`, descended by one step a sample.
 #[derive(Debug, Clone, Copy)]
@@ -37,10 +37,11 @@ impl<M: Memory> Criterion for LeastMeanSquare<M> {
     type Memory = M;
 
     fn advance(&self, view: &View<'_, M>) -> Move {
-        let (sums, solution) = (view.local.second(), &view.solution);
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
+        let here = sums.shifted(view.estimate.moved(-1.0, view.local.centre));
         Move {
-            step: steepest_step(sums),
-            noise_variance: solution.residual_variance(sums),
+            to: view.estimate.moved(1.0, steepest_step(&here)),
+            noise_variance: solution.residual_variance(sums, view.samples),
             // A descent moves both along its gradient, whatever least squares could have solved for.
             flags: solution.flags & Flags::HELD,
         }

@@ -5,16 +5,16 @@ use core::marker::PhantomData;
 use crate::block::{BlockConfig, BlockLaw, Criterion, Move, View};
 use crate::error::ConfigError;
 use crate::memory::{Memory, Moments};
-use crate::running::Running;
+use crate::queue::Queue;
 use crate::sums::Sums;
 
 /// `theta = (sum phi phi')^-1 sum phi F` over the window (eq. 5-6), by the closed 2x2 inverse.
 ///
-/// The sums are taken about the estimate before and solved for its correction, which is the same solution with less
+/// The sums are taken about an earlier estimate and solved for its correction, which is the same solution with less
 /// rounding. Where penetration and rate are in line, or the tool holds still, K alone is solved for and B is held.
 ///
 /// An update costs the same at any window.
-pub type BlockLeastSquares = BlockLaw<LeastSquares<Running<Sums>>>;
+pub type BlockLeastSquares = BlockLaw<LeastSquares<Queue<Sums>>>;
 
 /// `sum (F - phi' theta)^2`, solved outright.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,11 @@ impl<M: Memory> Criterion for LeastSquares<M> {
     type Memory = M;
 
     fn advance(&self, view: &View<'_, M>) -> Move {
-        let (sums, solution) = (view.local.second(), &view.solution);
-        Move { step: solution.correction, noise_variance: solution.residual_variance(sums), flags: solution.flags }
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
+        Move {
+            to: view.least_squares(),
+            noise_variance: solution.residual_variance(sums, view.samples),
+            flags: solution.flags,
+        }
     }
 }

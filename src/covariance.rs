@@ -30,6 +30,12 @@ impl Covariance {
     /// One observation of weight one, then division by the forgetting factor. Returns the gain `P phi / s` with
     /// `s = forgetting + phi' P phi` of the covariance before.
     pub fn observe(&mut self, o: &Observation, forgetting: f32) -> Impedance {
+        self.observe_with(o, forgetting, 1.0 / forgetting)
+    }
+
+    /// The same with `growth`, the inverse of the forgetting factor, at hand.
+    #[inline(always)]
+    pub(crate) fn observe_with(&mut self, o: &Observation, forgetting: f32, growth: f32) -> Impedance {
         let f1 = o.penetration;
         let f2 = o.rate + self.u * f1;
         let (g1, g2) = (self.d1 * f1, self.d2 * f2);
@@ -39,7 +45,7 @@ impl Covariance {
         let gain = Impedance { stiffness: (g1 + self.u * g2) * inverse2, damping: g2 * inverse2 };
         self.u -= g1 * f2 * inverse1;
         self.d1 *= inverse1;
-        self.d2 *= a1 * inverse2 / forgetting;
+        self.d2 *= a1 * inverse2 * growth;
         gain
     }
 
@@ -54,10 +60,7 @@ impl Covariance {
 
     /// Keeps both factors at or below `limit`; whether one had to be cut.
     pub fn limit(&mut self, limit: f32) -> bool {
-        let cut = self.d1 > limit || self.d2 > limit;
-        self.d1 = smaller(self.d1, limit);
-        self.d2 = smaller(self.d2, limit);
-        cut
+        self.limit_each(Impedance { stiffness: limit, damping: limit })
     }
 
     /// As [`Self::limit`], with a limit of its own for the factor of each parameter.
@@ -76,6 +79,19 @@ impl Covariance {
 
     /// Whether it is a covariance: finite, as their sum tells, and positive on both factors.
     pub fn is_sound(&self) -> bool {
-        (self.d1 + self.d2 + self.u).is_finite() && self.d1 > 0.0 && self.d2 > 0.0
+        self.total().is_finite() && self.d1 > 0.0 && self.d2 > 0.0
+    }
+
+    /// A number that is finite only where all are.
+    #[inline(always)]
+    pub(crate) fn total(&self) -> f32 {
+        self.d1 + self.d2 + self.u
+    }
+
+    /// Whether it is plainly a covariance within `limit`, if it is finite: of positive factors with a product that is no less.
+    /// Where this is false, [`Self::is_sound`] and [`Self::limit`] tell.
+    #[inline(always)]
+    pub(crate) fn is_plain(&self, limit: f32) -> bool {
+        self.d1 + self.d2 <= limit && self.d1 * self.d2 > 0.0
     }
 }

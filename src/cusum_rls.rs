@@ -43,6 +43,8 @@ impl Default for CusumRlsConfig {
 pub struct CusumRls {
     config: CusumRlsConfig,
     variances: Impedance,
+    /// Inverse of the forgetting factor.
+    growth: f32,
     /// Of the covariance, which a held contact would let grow without end.
     limits: Impedance,
 }
@@ -68,7 +70,7 @@ impl CusumRls {
         require(lambda > 0.5 && lambda <= 1.0, "forgetting_factor", "above 0.5 and at most 1")?;
         config.change.check()?;
         let variances = config.prior.check()?.variances();
-        Ok(Self { config, variances, limits: Impedance::ZERO.moved(Self::ROOM, variances) })
+        Ok(Self { config, variances, growth: 1.0 / lambda, limits: Impedance::ZERO.moved(Self::ROOM, variances) })
     }
 
     fn from(&self, estimate: Impedance, change: ChangeState) -> CusumRlsState {
@@ -87,7 +89,7 @@ impl CusumRls {
             *state = self.from(state.recursion.estimate, state.change);
         }
         let mut covariance = state.recursion.covariance;
-        let gain = covariance.observe(o, self.config.forgetting_factor);
+        let gain = covariance.observe_with(o, self.config.forgetting_factor, self.growth);
         let limited = covariance.limit_each(self.limits);
         let mut flags = state.recursion.commit_or(gain, innovation, covariance, self.prior());
         flags.set(Flags::LIMITED, limited);

@@ -6,7 +6,7 @@ use crate::contact::Impedance;
 use crate::cubic::depressed_root;
 use crate::error::ConfigError;
 use crate::math::{larger, sqrt};
-use crate::memory::Anew;
+use crate::memory::{Anew, Memory};
 use crate::sym2::Sym2;
 use crate::window::Recent;
 
@@ -61,7 +61,8 @@ impl BlockLeastMeanFourth {
 
     /// The line search from `estimate` over `recent`; `None` where the gradient is zero or nothing is excited.
     pub fn line_search(&self, recent: Recent<'_>, estimate: Impedance) -> Option<LineSearch> {
-        let view = View::of(&self.config, &Anew, recent, estimate);
+        let mut local = Anew.local(recent, estimate);
+        let view = View::of(&self.config, &Anew, recent, estimate, &mut local);
         search(self.criterion.direction, &view, &Powers::of(&view)?)
     }
 }
@@ -114,8 +115,8 @@ impl Criterion for LeastMeanFourth {
         let powers = Powers::of(view);
         let search = powers.and_then(|powers| search(self.direction, view, &powers));
         Move {
-            step: search.map_or(Impedance::ZERO, |s| Impedance::ZERO.moved(s.length, s.direction)),
-            noise_variance: powers.map_or(0.0, |powers| powers.noise_variance(view.local.samples)),
+            to: search.map_or(view.estimate, |s| view.estimate.moved(s.length, s.direction)),
+            noise_variance: powers.map_or(0.0, |powers| powers.noise_variance(view.samples)),
             flags: self.direction.flags(&view.solution),
         }
     }

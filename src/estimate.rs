@@ -4,7 +4,7 @@ use crate::contact::Impedance;
 use crate::error::{ConfigError, require_not_negative};
 use crate::flags::Flags;
 use crate::front_end::FrontEnd;
-use crate::math::{larger, sqrt};
+use crate::math::{larger, near_sqrt};
 use crate::step::Step;
 use serde::{Deserialize, Serialize};
 
@@ -140,7 +140,7 @@ impl Assessor {
             // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
             let variance = if variance < 0.0 { 0.0 } else { variance };
             let misplaced = offset * surface;
-            let width = sqrt(t * t * variance + misplaced * misplaced) + remainder.abs();
+            let width = near_sqrt(t * t * variance + misplaced * misplaced) + remainder.abs();
             if width.is_nan() { f32::INFINITY } else { width }
         };
         Impedance {

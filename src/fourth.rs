@@ -62,6 +62,7 @@ impl Moments for Fourth {
     }
 
     /// The misfit there is the old one less a x + b v, so each power of it follows from the one below.
+    #[inline(always)]
     fn shifted(&self, shift: Impedance) -> Self {
         let Impedance { stiffness: a, damping: b } = shift;
         let [xxxx, xxxv, xxvv, xvvv, vvvv, xxxe, xxve, xvve, vvve, xxee, xvee, vvee, xeee, veee, eeee] = self.sums;

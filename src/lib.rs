@@ -84,6 +84,7 @@ mod model_stream;
 mod parameter_rls;
 mod prior;
 mod propagation;
+mod queue;
 mod recursive;
 mod reset_rls;
 mod running;

@@ -21,6 +21,13 @@ pub trait Moments: Copy + Default + core::fmt::Debug {
     fn second(&self) -> &Sums;
 }
 
+/// The sums of a window, and what they were taken about.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Local<M> {
+    pub centre: Impedance,
+    pub moments: M,
+}
+
 /// What is remembered from one update to the next.
 pub trait Memory: Copy + Default + core::fmt::Debug {
     /// The sums that it tells of.
@@ -29,8 +36,8 @@ pub trait Memory: Copy + Default + core::fmt::Debug {
     /// Takes in the newest of `recent`, which is the law's own window; `estimate` is the estimate before it.
     fn follow(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance);
 
-    /// The window's sums about `estimate`.
-    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Self::Local;
+    /// The window's sums, about `estimate` or whatever near it comes cheaper.
+    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Local<Self::Local>;
 }
 
 /// Nothing is remembered: the window is summed anew at every update.
@@ -42,8 +49,8 @@ impl Memory for Anew {
 
     fn follow(&mut self, _: &BlockConfig, _: Recent<'_>, _: Impedance) {}
 
-    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Sums {
-        Sums::over(recent, estimate)
+    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Local<Sums> {
+        Local { centre: estimate, moments: Sums::over(recent, estimate) }
     }
 }
 

@@ -45,6 +45,7 @@ impl RecursiveState {
 
     /// Moves the estimate by `gain * innovation` and takes `covariance`, both or neither; where either is unsound, the
     /// covariance starts anew.
+    #[inline(always)]
     pub(crate) fn commit(
         &mut self,
         gain: Impedance,
@@ -72,6 +73,25 @@ impl RecursiveState {
             self.covariance = initial;
             Flags::RESET
         }
+    }
+
+    /// The same where nothing is out of the ordinary: both are finite, and the covariance needs no limit. Else nothing is taken.
+    #[inline(always)]
+    pub(crate) fn commit_plain(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        limit: f32,
+    ) -> bool {
+        let estimate = self.estimate.moved(innovation, gain);
+        // A sum that is finite has no part that is not.
+        let total = estimate.stiffness + estimate.damping + covariance.total();
+        let plain = covariance.is_plain(limit) && total.is_finite();
+        if plain {
+            (self.estimate, self.covariance) = (estimate, covariance);
+        }
+        plain
     }
 
     /// The outcome, told with the memory that `forgetting` gives.

@@ -14,7 +14,7 @@
 
 use crate::block::BlockConfig;
 use crate::contact::{Impedance, Observation};
-use crate::memory::{Memory, Moments};
+use crate::memory::{Local, Memory, Moments};
 use crate::sums::Solution;
 use crate::window::Recent;
 
@@ -43,6 +43,7 @@ impl<M: Moments> Run<M> {
     }
 
     /// The moments about `estimate`.
+    #[inline(always)]
     fn seen_from(&self, estimate: Impedance) -> M {
         self.moments.shifted(estimate.moved(-1.0, self.centre))
     }
@@ -91,13 +92,15 @@ pub struct Running<M> {
 
 impl<M: Moments> Running<M> {
     /// A window that was not followed sample by sample: all of it, about `centre`.
-    fn anew(recent: Recent<'_>, centre: Impedance) -> Self {
-        let mut running = Self { next: Run::about(centre), ..Self::default() };
-        recent.for_each(|o| running.next.add(o));
-        running.oldest = recent.oldest().unwrap_or_default();
-        running.fill = u16::try_from(recent.len()).unwrap_or(u16::MAX);
-        running.covered = running.fill;
-        running
+    #[cold]
+    #[inline(never)]
+    fn anew(&mut self, recent: Recent<'_>, centre: Impedance) {
+        *self = Self::default();
+        self.begin(centre);
+        recent.for_each(|o| self.next.add(o));
+        self.oldest = recent.oldest().unwrap_or_default();
+        self.fill = u16::try_from(recent.len()).unwrap_or(u16::MAX);
+        self.covered = self.fill;
     }
 
     /// `next` begins again, and is not being rebuilt.
@@ -111,16 +114,22 @@ impl<M: Moments> Running<M> {
         let (e, sums) = (newest.misfit(self.next.centre), self.next.moments.second());
         let square = e * e;
         let out = if self.covered >= SOME {
-            square * sums.samples > FAR * sums.misfit_energy
+            square * f32::from(self.covered) > FAR * sums.misfit_energy
         } else {
             !self.apart && self.level > 0.0 && square > FAR * self.level
         };
         let back = self.apart && square <= FAR * self.level;
-        if !out && !back {
-            return;
+        if out || back {
+            self.split(out && !self.apart, back);
         }
-        if out && !self.apart && self.covered >= SOME {
-            self.level = sums.misfit_energy / sums.samples;
+    }
+
+    /// The run so far joins the tail; the sample that comes is the `first` that is out, another, or the first that is `back`.
+    #[cold]
+    #[inline(never)]
+    fn split(&mut self, first: bool, back: bool) {
+        if first && self.covered >= SOME {
+            self.level = self.next.moments.second().misfit_energy / f32::from(self.covered);
         }
         self.apart = !back;
         if self.covered < self.fill {
@@ -133,6 +142,7 @@ impl<M: Moments> Running<M> {
     }
 
     /// Adds the newest sample to what is rebuilt, and one more of the ring; two where the contact is young.
+    #[inline(never)]
     fn catch_up(&mut self, newest: &Observation, recent: Recent<'_>) {
         self.rebuilt.add(newest);
         self.caught_up += 1;
@@ -150,15 +160,25 @@ impl<M: Moments> Running<M> {
         }
     }
 
+    /// The tail is empty, and the run is the window.
+    #[inline(never)]
+    fn swap(&mut self, config: &BlockConfig) {
+        self.tail = self.next;
+        self.level = self.tail.moments.second().misfit_energy / f32::from(self.covered);
+        self.begin(better(&self.tail, self.covered, config).unwrap_or(self.tail.centre));
+        self.age = 0;
+    }
+
     /// Updates from one look to the next.
     fn patience(&self, config: &BlockConfig) -> u16 {
         if self.fill < LOOK { SOME / 2 } else { LOOK.min(config.window / 4).max(SOME) }
     }
 
     /// Rebuilds `next` where another centre suits it better.
+    #[inline(never)]
     fn look(&mut self, config: &BlockConfig) {
         self.since = 0;
-        if let Some(centre) = better(&self.next, config) {
+        if let Some(centre) = better(&self.next, self.covered, config) {
             self.rebuilt = Run::about(centre);
             (self.caught_up, self.rebuilding, self.apart) = (0, true, false);
         }
@@ -166,9 +186,9 @@ impl<M: Moments> Running<M> {
 }
 
 /// The least-squares solution of `run`, where it explains most of the misfit about the centre.
-fn better<M: Moments>(run: &Run<M>, config: &BlockConfig) -> Option<Impedance> {
+fn better<M: Moments>(run: &Run<M>, samples: u16, config: &BlockConfig) -> Option<Impedance> {
     let sums = run.moments.second();
-    let correction = Solution::of(sums, config, run.centre).correction;
+    let correction = Solution::of(sums, f32::from(samples), config, run.centre).correction;
     let explained = correction.stiffness * sums.misfit.stiffness + correction.damping * sums.misfit.damping;
     let centre = run.centre.moved(1.0, correction);
     (explained > MOST * sums.misfit_energy && centre.is_finite()).then_some(centre)
@@ -180,17 +200,12 @@ impl<M: Moments> Memory for Running<M> {
     fn follow(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
         let expected = if self.fill < config.window { self.fill + 1 } else { config.window };
         if self.fill == 0 || recent.len() != usize::from(expected) {
-            *self = Self::anew(recent, estimate);
+            self.anew(recent, estimate);
             return;
         }
         let newest = recent.newest().unwrap_or_default();
         if self.covered >= config.window {
-            // The tail is empty: the run is the window.
-            self.tail = self.next;
-            let sums = self.tail.moments.second();
-            self.level = sums.misfit_energy / sums.samples;
-            self.begin(better(&self.tail, config).unwrap_or(self.tail.centre));
-            self.age = 0;
+            self.swap(config);
         }
         if self.fill == config.window {
             let oldest = self.oldest;
@@ -212,13 +227,22 @@ impl<M: Moments> Memory for Running<M> {
         }
     }
 
-    fn local(&self, _: Recent<'_>, estimate: Impedance) -> M {
-        if self.covered >= self.fill {
-            return self.next.seen_from(estimate);
+    fn local(&self, _: Recent<'_>, estimate: Impedance) -> Local<M> {
+        Local { centre: estimate, moments: self.seen_from(estimate) }
+    }
+}
+
+impl<M: Moments> Running<M> {
+    /// The window's moments about `estimate`.
+    #[inline(never)]
+    pub fn seen_from(&self, estimate: Impedance) -> M {
+        let mut moments = self.next.moments;
+        if self.covered < self.fill {
+            if self.tail.centre != self.next.centre {
+                return self.tail.seen_from(estimate).with(&self.next.seen_from(estimate));
+            }
+            moments = moments.with(&self.tail.moments);
         }
-        if self.tail.centre == self.next.centre {
-            return self.tail.moments.with(&self.next.moments).shifted(estimate.moved(-1.0, self.tail.centre));
-        }
-        self.tail.seen_from(estimate).with(&self.next.seen_from(estimate))
+        moments.shifted(estimate.moved(-1.0, self.next.centre))
     }
 }

@@ -1,6 +1,9 @@
 //! Self-perturbing recursive least squares (SPRLS).
 
+use core::cmp::Ordering;
+
 use crate::contact::{Impedance, Observation};
+use crate::covariance::Covariance;
 use crate::error::{ConfigError, require_not_negative};
 use crate::flags::Flags;
 use crate::law::Law;
@@ -80,6 +83,21 @@ impl Sprls {
 }
 
 impl Sprls {
+    /// Whether `innovation` may kick: less than half a step is none. Not a number may.
+    #[inline(always)]
+    fn kicks(&self, innovation: f32) -> bool {
+        let level = self.config.perturbation_sensitivity * innovation * innovation;
+        level.partial_cmp(&0.499_999) != Some(Ordering::Less)
+    }
+
+    /// The kick of the innovation before, where there is one.
+    fn perturb(&self, covariance: &mut Covariance, innovation: f32) {
+        let kick = self.kick(innovation);
+        if kick > 0.0 {
+            covariance.inflate(kick);
+        }
+    }
+
     fn from(&self, estimate: Impedance) -> SprlsState {
         SprlsState { recursion: RecursiveState::new(self.config.initial_covariance, estimate), innovation_before: 0.0 }
     }
@@ -90,11 +108,23 @@ impl Sprls {
     pub fn learn(&self, state: &mut SprlsState, o: &Observation) -> f32 {
         let innovation = o.misfit(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
-        let gain = covariance.observe(o, 1.0);
-        let kick = self.kick(state.innovation_before);
-        if kick > 0.0 {
-            covariance.inflate(kick);
+        let gain = covariance.observe_with(o, 1.0, 1.0);
+        let quiet = !self.kicks(state.innovation_before);
+        if quiet && state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
+            state.innovation_before = innovation;
+            innovation
+        } else {
+            self.learn_perturbed(state, o)
         }
+    }
+
+    /// The same where the covariance is kicked, has to be limited, or begins anew.
+    #[cold]
+    fn learn_perturbed(&self, state: &mut SprlsState, o: &Observation) -> f32 {
+        let innovation = o.misfit(state.recursion.estimate);
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe_with(o, 1.0, 1.0);
+        self.perturb(&mut covariance, state.innovation_before);
         covariance.limit(self.config.covariance_limit);
         state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
         state.innovation_before = innovation;
@@ -121,11 +151,8 @@ impl Law for Sprls {
         let o = recent.newest().unwrap_or_default();
         let innovation = o.misfit(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
-        let gain = covariance.observe(&o, 1.0);
-        let kick = self.kick(state.innovation_before);
-        if kick > 0.0 {
-            covariance.inflate(kick);
-        }
+        let gain = covariance.observe_with(&o, 1.0, 1.0);
+        self.perturb(&mut covariance, state.innovation_before);
         let limited = covariance.limit(self.config.covariance_limit);
         let mut flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
         flags.set(Flags::LIMITED, limited);

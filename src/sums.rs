@@ -12,8 +12,6 @@ use crate::window::Recent;
 /// lose less to rounding than sums of raw force.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sums {
-    /// How many samples.
-    pub samples: f32,
     /// `sum phi phi'`.
     pub regressors: Sym2,
     /// `sum phi`.
@@ -38,7 +36,6 @@ impl Moments for Sums {
     fn of(o: &Observation, e: f32) -> Self {
         let (x, v) = (o.penetration, o.rate);
         Self {
-            samples: 1.0,
             regressors: Sym2 { xx: x * x, xv: x * v, vv: v * v },
             regressor: Impedance { stiffness: x, damping: v },
             misfit: Impedance { stiffness: x * e, damping: v * e },
@@ -50,7 +47,6 @@ impl Moments for Sums {
     fn with(&self, other: &Self) -> Self {
         let (r, s) = (&self.regressors, &other.regressors);
         Self {
-            samples: self.samples + other.samples,
             regressors: Sym2 { xx: r.xx + s.xx, xv: r.xv + s.xv, vv: r.vv + s.vv },
             regressor: plus(self.regressor, other.regressor),
             misfit: plus(self.misfit, other.misfit),
@@ -60,8 +56,6 @@ impl Moments for Sums {
 
     #[inline(always)]
     fn gather(&mut self, lost: &mut Self, terms: &Self, sign: f32) {
-        // Counts and whole numbers are exact.
-        self.samples += sign * terms.samples;
         let (r, l, t) = (&mut self.regressors, &mut lost.regressors, &terms.regressors);
         gather(&mut r.xx, &mut l.xx, sign * t.xx);
         gather(&mut r.xv, &mut l.xv, sign * t.xv);
@@ -111,23 +105,24 @@ impl Solution {
     /// Both where the tool moves and the columns are independent, K alone where they are in line or it holds still,
     /// neither where it is not in the surface.
     ///
-    /// A prior of `config` pulls towards zero; `centre` is the estimate that the sums were taken about.
-    pub fn of(sums: &Sums, config: &BlockConfig, centre: Impedance) -> Self {
+    /// A prior of `config` pulls towards zero; `centre` is the estimate that the sums of so many `samples` were taken about.
+    #[inline(always)]
+    pub fn of(sums: &Sums, samples: f32, config: &BlockConfig, centre: Impedance) -> Self {
         match config.prior {
-            None => Self::plain(sums, config),
+            None => Self::plain(sums, samples, config),
             Some(prior) => {
                 let (ridge, mut sums) = (prior.ridge(), *sums);
                 sums.regressors.xx += ridge.stiffness;
                 sums.regressors.vv += ridge.damping;
                 sums.misfit.stiffness -= ridge.stiffness * centre.stiffness;
                 sums.misfit.damping -= ridge.damping * centre.damping;
-                Self::plain(&sums, config)
+                Self::plain(&sums, samples, config)
             }
         }
     }
 
-    fn plain(sums: &Sums, config: &BlockConfig) -> Self {
-        let moving = sums.regressors.vv > sums.samples * (config.rate_floor * config.rate_floor);
+    fn plain(sums: &Sums, samples: f32, config: &BlockConfig) -> Self {
+        let moving = sums.regressors.vv > samples * (config.rate_floor * config.rate_floor);
         if let Some(inverse) = sums.regressors.invert(config.independence_floor).filter(|_| moving) {
             let correction = inverse.times(sums.misfit);
             if correction.is_finite() {
@@ -146,10 +141,10 @@ impl Solution {
     }
 
     /// Mean square of the residual that the solution leaves.
-    pub fn residual_variance(&self, sums: &Sums) -> f32 {
+    pub fn residual_variance(&self, sums: &Sums, samples: f32) -> f32 {
         let explained =
             self.correction.stiffness * sums.misfit.stiffness + self.correction.damping * sums.misfit.damping;
         let left = sums.misfit_energy - explained;
-        if left > 0.0 { left / larger(sums.samples - 2.0, 1.0) } else { 0.0 }
+        if left > 0.0 { left / larger(samples - 2.0, 1.0) } else { 0.0 }
     }
 }

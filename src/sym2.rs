@@ -61,16 +61,20 @@ impl Sym2 {
         self.invert(floor).map(|inverse| inverse.times(right))
     }
 
-    /// The inverse of a positive definite matrix; `None` where [`Self::independence`] is at most `floor`.
+    /// The inverse of a positive definite matrix; `None` where [`Self::independence`] is at most `floor`. It is infinite where
+    /// the inverse of an entry is beyond the range.
+    #[inline(always)]
     pub fn invert(self, floor: f32) -> Option<Self> {
-        if self.independence() <= floor {
-            return None;
-        }
         let ratio = self.xv / self.xx;
-        let vv = 1.0 / (self.vv - ratio * self.xv);
-        let xv = -ratio * vv;
-        let inverse = Self { xx: 1.0 / self.xx - ratio * xv, xv, vv };
-        inverse.is_finite().then_some(inverse)
+        let left = self.vv - ratio * self.xv;
+        // The independence is `left / vv`.
+        if self.xx > 0.0 && left > floor * self.vv {
+            let vv = 1.0 / left;
+            let xv = -ratio * vv;
+            Some(Self { xx: 1.0 / self.xx - ratio * xv, xv, vv })
+        } else {
+            None
+        }
     }
 
     /// `self * right`.

@@ -90,6 +90,9 @@ impl<'a> Recent<'a> {
     /// The newest `count` of them, all where there are fewer.
     #[must_use]
     pub fn last(self, count: usize) -> Self {
+        if self.len() <= count {
+            return self;
+        }
         let tail = |run: &'a [Observation], keep: usize| run.get(run.len().saturating_sub(keep)..).unwrap_or(run);
         Self { older: tail(self.older, count.saturating_sub(self.newer.len())), newer: tail(self.newer, count) }
     }
@@ -108,6 +111,22 @@ impl<'a> Recent<'a> {
     pub fn before_newest(&self, count: usize) -> Option<Observation> {
         let from_end = |run: &[Observation], count: usize| run.get(run.len().checked_sub(count + 1)?).copied();
         from_end(self.newer, count).or_else(|| from_end(self.older, count.checked_sub(self.newer.len())?))
+    }
+
+    /// The one `count` after the oldest; the oldest itself where that is zero.
+    pub fn after_oldest(&self, count: usize) -> Option<Observation> {
+        self.older.get(count).or_else(|| self.newer.get(count.checked_sub(self.older.len())?)).copied()
+    }
+
+    /// The one `count` before the newest and the one before that; zero where there is none.
+    pub fn pair_before_newest(&self, count: usize) -> [Observation; 2] {
+        let pair = |run: &'a [Observation], count: usize| match run.get(..run.len().checked_sub(count)?)? {
+            [.., before, at] => Some([*at, *before]),
+            _ => None,
+        };
+        pair(self.newer, count)
+            .or_else(|| pair(self.older, count.checked_sub(self.newer.len())?))
+            .unwrap_or_else(|| [count, count + 1].map(|count| self.before_newest(count).unwrap_or_default()))
     }
 
     /// Calls `visit` on each, oldest first.

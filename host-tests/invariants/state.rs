@@ -7,8 +7,8 @@ use crate::simulator::Trial;
 use crate::tolerance::close;
 use nalgebra::Matrix2;
 use palpate::{
-    BlockConfig, BlockLeastSquares, Covariance, Ewrls, EwrlsConfig, Law, Observation, Recent, Sample, Sprls,
-    SprlsConfig, StreamConfig, Sym2,
+    BlockConfig, BlockLeastSquares, Covariance, Ewrls, EwrlsConfig, Flags, FrontEnd, Law, Observation, Recent,
+    RecursiveState, Sample, Sprls, SprlsConfig, StreamConfig, Sym2,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -149,4 +149,39 @@ fn the_same_trial_later_gives_the_same_bits() {
     for (k, (got, want)) in rig::run(&mut bench, &samples).iter().zip(&alone).enumerate() {
         rig::same(&format!("sample {k}"), got, want);
     }
+}
+
+/// A dithered contact, one that is held until the covariance is at its limit, and rows at both ends of the range.
+fn all_weathers() -> Vec<Observation> {
+    let dithered = (0..2000).map(|k| {
+        let phase = 0.063 * f64::from(k);
+        let (x, v) = (0.0135 + 0.0033 * phase.sin(), 0.207 * phase.cos());
+        let jumped = if k < 1000 { 300.0 } else { 1800.0 };
+        Observation { penetration: x as f32, rate: v as f32, force: (jumped * x + 5.0 * v) as f32 }
+    });
+    let held = (0..9000).map(|_| Observation { penetration: 5e-3, rate: 0.0, force: 1.5 });
+    let range = FrontEnd::RANGE;
+    let far = [(range, -range, range), (-range, range, range), (range, range, -range), (0.0, 0.0, range)];
+    let near = [(1e-20, 1e-20, 1e-20), (0.0, 1e-30, 0.0), (1e-30, 0.0, range)];
+    let ends = far.into_iter().chain(near).cycle().take(700);
+    let ends = ends.map(|(penetration, rate, force)| Observation { penetration, rate, force });
+    dithered.clone().chain(held).chain(ends).chain(dithered).collect()
+}
+
+#[test]
+fn learning_alone_comes_to_the_bits_of_an_update() {
+    let (ewrls, sprls) = (Ewrls::new(EwrlsConfig::default()).unwrap(), Sprls::new(SprlsConfig::default()).unwrap());
+    let (mut e, mut s) = ([ewrls.start(); 2], [sprls.start(); 2]);
+    let mut limited = 0;
+    for (k, o) in all_weathers().iter().enumerate() {
+        let recent = Recent::of(std::slice::from_ref(o));
+        ewrls.learn(&mut e[0], o);
+        limited += usize::from(ewrls.update(&mut e[1], recent).flags.intersects(Flags::LIMITED | Flags::RESET));
+        sprls.learn(&mut s[0], o);
+        sprls.update(&mut s[1], recent);
+        let bits = |r: &RecursiveState| (r.estimate.stiffness.to_bits(), r.estimate.damping.to_bits(), r.covariance);
+        assert_eq!(bits(&e[0]), bits(&e[1]), "ewrls at {k}: {o:?}");
+        assert_eq!(bits(&s[0].recursion), bits(&s[1].recursion), "sprls at {k}: {o:?}");
+    }
+    assert!(limited > 100, "the way that is seldom gone was gone {limited} times");
 }

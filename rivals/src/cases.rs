@@ -23,16 +23,16 @@ impl Work for Nothing {
     fn work(&mut self) {}
 }
 
-/// One update.
-struct Update<'a, F> {
+/// One update with what it is given: the newest observation, or the latest of them.
+struct Update<'a, F, I> {
     update: &'a mut F,
-    recent: Recent<'a>,
+    given: I,
     found: Impedance,
 }
 
-impl<F: FnMut(Recent<'_>) -> Impedance> Work for Update<'_, F> {
+impl<F: FnMut(I) -> Impedance, I: Copy> Work for Update<'_, F, I> {
     fn work(&mut self) {
-        self.found = (self.update)(self.recent);
+        self.found = (self.update)(self.given);
     }
 }
 
@@ -46,42 +46,58 @@ pub fn run(recording: &Recording, mut gauge: Gauge) -> Result<(), Fault> {
     for _ in 0..8 {
         gauge.pass(&mut Nothing)?;
     }
-    let newest = |recent: Recent<'_>| recent.newest().unwrap_or_default();
     let mut nalgebra = NalgebraRls::default();
-    rival(recording, &mut gauge, "nalgebra", 0, size_of::<NalgebraRls>(), |recent| nalgebra.update(&newest(recent)))?;
+    recursive(recording, &mut gauge, "nalgebra", size_of::<NalgebraRls>(), |o| nalgebra.update(o))?;
     let mut kfilter = Kfilter::default();
-    rival(recording, &mut gauge, "kfilter", 0, size_of::<Kfilter>(), |recent| kfilter.update(&newest(recent)))?;
+    recursive(recording, &mut gauge, "kfilter", size_of::<Kfilter>(), |o| kfilter.update(o))?;
     let mut ads = Adskalman::default();
-    rival(recording, &mut gauge, "adskalman", 0, size_of::<Adskalman>(), |recent| ads.update(&newest(recent)))?;
+    recursive(recording, &mut gauge, "adskalman", size_of::<Adskalman>(), |o| ads.update(o))?;
     let before = HEAP.used();
     let mut mini = minikalman();
     let state = size_of_val(&mini) + (HEAP.used() - before);
-    rival(recording, &mut gauge, "minikalman", 0, state, |recent| mini(&newest(recent)))?;
+    recursive(recording, &mut gauge, "minikalman", state, |o| mini(o))?;
     for window in [50, 300] {
         let bytes = usize::from(window) * size_of::<Observation>();
         let last = usize::from(window);
-        rival(recording, &mut gauge, "nalgebra_window", window, bytes, |recent| nalgebra_window(recent.last(last)))?;
+        gauge.case("nalgebra_window", window, bytes, 0)?;
+        each(recording, |recent| {
+            pass(&mut gauge, &mut |recent: Recent<'_>| nalgebra_window(recent.last(last)), recent)
+        })?;
     }
     Ok(())
 }
 
-/// One rival over the observations in contact; it is not told of a loss, so that its state is that of one long contact.
-fn rival(
+/// One recursive rival over the observations in contact, with the newest at hand; it is not told of a loss, so that its state is
+/// that of one long contact.
+fn recursive(
     recording: &Recording,
     gauge: &mut Gauge,
     name: &str,
-    window: u16,
     bytes: usize,
-    mut update: impl FnMut(Recent<'_>) -> Impedance,
+    mut update: impl FnMut(&Observation) -> Impedance,
 ) -> Result<(), Fault> {
-    gauge.case(name, window, bytes, 0)?;
+    gauge.case(name, 0, bytes, 0)?;
+    each(recording, |recent| {
+        let o = recent.newest().ok_or("a ring without an observation")?;
+        pass(gauge, &mut update, &o)
+    })
+}
+
+/// One pass of `update`.
+fn pass<I: Copy>(gauge: &mut Gauge, update: &mut impl FnMut(I) -> Impedance, given: I) -> Result<(), Fault> {
+    let mut pass = Update { update, given, found: Impedance::ZERO };
+    gauge.pass(black_box(&mut pass))?;
+    black_box(pass.found);
+    Ok(())
+}
+
+/// Calls `visit` with the ring at each observation in contact.
+fn each(recording: &Recording, mut visit: impl FnMut(Recent<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
     let mut stream = Stream::<300>::new(recording.config.stream).map_err(|_| "the settings are out of range")?;
     for &sample in recording.samples {
         let event = stream.update(sample).map_err(|_| "a sample was rejected")?;
         if event.reading.contact && !event.reading.restarted {
-            let mut pass = Update { update: &mut update, recent: stream.recent(), found: Impedance::ZERO };
-            gauge.pass(black_box(&mut pass))?;
-            black_box(pass.found);
+            visit(stream.recent())?;
         }
     }
     Ok(())

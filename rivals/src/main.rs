@@ -1,4 +1,5 @@
-//! The table of `palpate` beside its rivals: `cargo run --release -p palpate-rivals`.
+//! The table of `palpate` beside its rivals: `cargo run --release -p palpate-rivals`; with `--readme` its rows of the README are
+//! written there.
 
 #[cfg(not(target_os = "none"))]
 mod accuracy;
@@ -7,7 +8,13 @@ mod table;
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
-    match table::print() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let done = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => table::print(),
+        ["--readme"] => table::write(),
+        _ => Err(anyhow::anyhow!("nothing, or --readme")),
+    };
+    match done {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("rivals: {error:#}");
