@@ -35,6 +35,22 @@ fn a_lens_leaves_a_parabola_its_velocity_and_its_acceleration() {
 }
 
 #[test]
+fn a_lens_leaves_a_quartic_its_third_and_fourth_derivative() {
+    for (blur, stride) in [(2e-3, 1), (4e-3, 3), (20e-3, 7)] {
+        let lens = Lens::new(blur, 1e-3, stride);
+        let time: Vec<f64> = (0..1000).map(|row| f64::from(row - 500) * 1e-3).collect();
+        let x: Vec<f64> = time.iter().map(|t| 0.3 - t + 5.0 * t * t + 2.0 * t.powi(3) - 7.0 * t.powi(4)).collect();
+        let seen: Vec<f64> = time.iter().copied().step_by(stride).collect();
+        let edge = lens.reach() / stride + 2;
+        let jerk: Vec<f64> = seen.iter().map(|t| 12.0 - 168.0 * t).collect();
+        // Some hundred taps of size blur^-n carry the rounding of x, which is of size one.
+        let rounding = |power: i32| 1e-13 * blur.powi(-power);
+        assert!(apart(&lens.jerk(&x), &jerk, edge) < rounding(3), "blur {blur}");
+        assert!(apart(&lens.snap(&x), &vec![-168.0; seen.len()], edge) < rounding(4), "blur {blur}");
+    }
+}
+
+#[test]
 fn a_lens_passes_a_sine_as_its_corner_says() {
     let lens = Lens::new(0.132_5 / 40.0, 1e-3, 1);
     let wave: Vec<f64> = (0..4000).map(|row| (std::f64::consts::TAU * 40.0 * f64::from(row) * 1e-3).sin()).collect();

@@ -159,3 +159,51 @@ fn even(time: &[f64], values: &[f64], origin: f64, period: f64, rows: usize) -> 
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensors::Channel;
+
+    fn raw(rows: usize, figures: Channel) -> Raw {
+        let line = |first: f64| (0..rows).map(|row| first + row as f64).collect::<Vec<f64>>();
+        Raw {
+            name: "a line".to_owned(),
+            origin: 2.0,
+            period: 0.5,
+            position: line(0.0),
+            force: Some(line(100.0)),
+            // Held until the next row: what acts at the row is half a row older.
+            effort: Some(line(0.5)),
+            good: (0..rows).map(|row| row != 17).collect(),
+            figures: Figures { position: figures, force: None, effort: None },
+            dropouts: vec![3.0],
+            gaps: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn means_of_rows_keep_every_channel_at_the_instant_of_its_row() {
+        let thin = raw(50, Channel { resolution: 0.1, noise: 1.0 }).thinned(5);
+        assert_eq!((thin.len(), thin.period, thin.origin), (10, 2.5, 3.0));
+        for row in 0..10 {
+            let middle = 5.0 * row as f64 + 2.0;
+            assert_eq!(thin.position[row], middle);
+            assert_eq!(thin.force.as_ref().unwrap()[row], 100.0 + middle);
+            // The mean over the five rows that it is held for from there, as long as there are five.
+            let held = thin.effort.as_ref().unwrap()[row];
+            assert!(row == 9 || held == middle + 2.5, "row {row}: {held}");
+        }
+        assert_eq!(thin.good.iter().position(|good| !good), Some(3));
+        assert_eq!(thin.dropouts, [2.0]);
+    }
+
+    #[test]
+    fn rounding_falls_with_the_root_where_noise_shakes_the_reading_and_stays_where_it_does_not() {
+        let shaken = raw(50, Channel { resolution: 0.1, noise: 1.0 }).thinned(25).figures.position;
+        assert_eq!((shaken.resolution, shaken.noise), (0.1 / 5.0, 0.2));
+        let still = raw(50, Channel { resolution: 1.0, noise: 1.0 / 12f64.sqrt() }).thinned(25).figures.position;
+        assert_eq!(still.resolution, 1.0);
+        assert!((still.noise - 1.0 / 12f64.sqrt()).abs() < 1e-12, "{}", still.noise);
+    }
+}

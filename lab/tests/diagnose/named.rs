@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::bench::{BENCH, Case, FADES, Size, biased, driven, fit, led, names};
+use crate::bench::{BENCH, Case, FADES, Size, biased, carried, driven, fit, led, names};
 
 /// What is missing is named first, explains the recordings to the floor, and its values are within a tenth.
 fn finds(case: &Case, name: &str, expected: &[(&str, f64)]) {
@@ -93,6 +93,15 @@ fn a_drive_at_the_end_of_its_effort() {
     };
     let case = Case::new(&kicked(0), kicked, "[[effect]]\nname = \"effort_saturation\"\nlimit_n = 3.0\n");
     finds(&case, "effort_saturation", &[("limit", 3.0)]);
+}
+
+/// The simulation follows both masses; the diagnosis looks at derivatives and follows none.
+#[test]
+fn a_cable_that_gives() {
+    let table = "[[effect]]\nname = \"transmission_compliance\"\nlink_stiffness_n_m = 20000\nmotor_share = 0.6\n\
+                 damping_ratio = 0.05\n";
+    let case = Case::new(&carried(0), carried, table);
+    finds(&case, "transmission_compliance", &[("link_stiffness", 20000.0), ("motor_share", 0.6)]);
 }
 
 #[test]

@@ -26,6 +26,11 @@ fn at_fifty_samples_a_second() {
 }
 
 #[test]
+fn at_fifty_thousand_samples_a_second() {
+    names(&fades(Size { rate_hz: 5e4, duration_s: 10.0, ..BENCH }).diagnose(&[]), "stress_relaxation");
+}
+
+#[test]
 fn with_a_quarter_of_a_second_lost() {
     let case = fades(BENCH);
     case.rewrite(|row, _| !(900..1000).contains(&row));
