@@ -57,21 +57,28 @@ pub fn draw_all(
     Ok((drawn, failed))
 }
 
-/// One thread's simulators, started when they are first asked for.
+/// One thread's simulators with the cases each has played, started when they are first asked for.
 struct Player<'a> {
     python: Option<&'a Python>,
-    simulators: HashMap<Source, Simulator>,
+    simulators: HashMap<Source, (Simulator, usize)>,
 }
+
+/// Cases after which a simulator is started anew: Exudyn keeps some 0.3 GB of each that it has played.
+const SHIFT: usize = 6;
 
 impl Player<'_> {
     fn play(&mut self, entry: &Planned, seed: u64, home: &Path) -> Result<Drawn> {
         let case = match (entry.source, self.python) {
             (Source::Own, _) => draw(seed, entry.index, &entry.wish)?,
             (source, Some(python)) => {
-                let simulator = match self.simulators.entry(source) {
+                if self.simulators.get(&source).is_some_and(|(_, played)| *played >= SHIFT) {
+                    self.simulators.remove(&source);
+                }
+                let (simulator, played) = match self.simulators.entry(source) {
                     Entry::Occupied(running) => running.into_mut(),
-                    Entry::Vacant(place) => place.insert(Simulator::start(python, source)?),
+                    Entry::Vacant(place) => place.insert((Simulator::start(python, source)?, 0)),
                 };
+                *played += 1;
                 draw_in(simulator, seed, entry.index, &entry.wish)?
             }
             (source, None) => anyhow::bail!("{} is not installed", source.name()),

@@ -50,8 +50,9 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The slowest swing of a link that can be told, rad/s: twice the corner of the filter through which the drive is looked
-    /// at. A link that swings slower smooths the balance of its noise, and seems to explain it.
+    /// The slowest swing of a link that can be told, rad/s, the whole moved mass on it: the corner of the filter through which the
+    /// drive is looked at. Motor against tool swings at twice that at the least; a link that is softer smooths the balance of its
+    /// noise, and seems to explain it.
     #[must_use]
     pub fn link_rate(&self) -> f64 {
         std::f64::consts::TAU * 0.2 / self.drive_step
