@@ -62,13 +62,6 @@ pub fn driven(trial: usize) -> String {
     )
 }
 
-/// The led bench with a drive that carries the tool into the pad.
-pub fn carried(trial: usize) -> String {
-    let drive = "[drive]\nmass_kg = 0.45\nviscous_n_s_m = 2.0\n[control]\nproportional_n_m = 775\nderivative_n_s_m = 10\n\
-                 rate_hz = 1000\n[contact]\n";
-    led(Size { rate_hz: 1000.0, duration_s: 12.0, ..BENCH }, 300.0, trial).replace("[contact]\n", drive)
-}
-
 pub fn palpate() -> Command {
     Command::new(env!("CARGO_BIN_EXE_palpate"))
 }
