@@ -82,10 +82,8 @@ fn laws(study: &Study, stand: &Stand, judgement: &Judgement) -> Vec<f64> {
     let trials = study.nominal.trials();
     for named in &judgement.named {
         let share = (left / named.gain.max(f64::MIN_POSITIVE)).min(1.0).sqrt();
-        let start = stand.model.start_of(named.at);
-        for at in start..start + named.term.all_parameters(trials).len() {
-            missed[at] = share * stand.values[at].abs();
-        }
+        let own = missed.iter_mut().zip(&stand.values).skip(stand.model.start_of(named.at));
+        own.take(named.term.all_parameters(trials).len()).for_each(|(missed, value)| *missed = share * value.abs());
     }
     missed
 }
