@@ -30,7 +30,7 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
 
 fn table(recorded: &Recorded) -> Markup {
     html! {
-        div.wide { table {
+        div.wide { table.recorded {
             thead { tr { th { "recording" } th.text { "known" } th.text { "verdict" } th.text { "named" } th.text { "rivals" } th { "residual" } th.text { "judgement" } } }
             tbody { @for row in &recorded.rows { (row_of(row)) } }
         } }
