@@ -22,11 +22,13 @@ pub mod locate;
 pub mod measure;
 pub mod model;
 pub mod phase;
+pub mod product;
 pub mod raw;
 pub mod report;
 pub mod score;
 pub mod select;
 pub mod sentence;
+pub mod sharpness;
 pub mod stand;
 pub mod study;
 pub mod texture;
@@ -45,8 +47,8 @@ use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
 use compose::Parts;
-use lens::Lens;
 use raw::Raw;
+use sharpness::lenses;
 use study::Study;
 use twin::Studio;
 
@@ -79,8 +81,11 @@ pub fn diagnose(
         let simulated: Vec<Raw> = simulation.iter().map(simulated).collect();
         compose::handed_rests(&study, &simulated)
     });
-    let improved = improved::rig_of(rig, &study, &search, &judgement).context("nothing was searched")?;
-    let parts = Parts { rig, study: &study, search: &search, judgement: &judgement, handed, findings };
+    let stand = &search.rounds.last().context("nothing was searched")?.stand;
+    let estimates = interval::estimates(&study, stand, &judgement);
+    let improved = improved::rig_of(rig, &study, stand, &judgement, &estimates);
+    let (study, search, judgement, estimates) = (&study, &search, &judgement, &estimates);
+    let parts = Parts { rig, study, search, judgement, estimates, handed, findings };
     let (answer, pictures) = compose::compose(parts).context("no channel was left to look at")?;
     Ok(Found { answer, pictures, improved })
 }
@@ -101,7 +106,7 @@ pub fn sensed(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Vec<Raw>>
 /// Effects in the rig file that cannot be.
 pub fn study(rig: &Rig, origin: &str, raws: Vec<Raw>, seed: u64) -> Result<Study> {
     let raws = afforded(rig, raws);
-    let (contact, drive) = (Lens::for_contact(rig, &raws), Lens::for_drive(rig, &raws));
+    let (contact, drive) = lenses(rig, &raws);
     Ok(Study::new(rig, origin, Studio::new(raws, contact, drive, seed))?)
 }
 
@@ -111,7 +116,8 @@ const ENOUGH: f64 = 20.0;
 
 /// `raws` at a rate that the filters need: twins of a million rows would show nothing that those of their means do not.
 fn afforded(rig: &Rig, raws: Vec<Raw>) -> Vec<Raw> {
-    let corner = Lens::for_contact(rig, &raws).first().corner().max(Lens::for_drive(rig, &raws).first().corner());
+    let (contact, drive) = lenses(rig, &raws);
+    let corner = contact.first().corner().max(drive.first().corner());
     let parts = raws.first().map_or(1.0, |raw| 1.0 / (raw.period * ENOUGH * corner)) as usize;
     if parts < 3 {
         return raws;

@@ -4,7 +4,7 @@ use super::answer::{
     Answer, Bar, Evidence, Finding, Goodness, Location, Nominal, Physics, Pictures, Rival, Trace, Value, Verdict,
 };
 use super::fold::{self, HeldOut};
-use super::interval::{self, Estimate};
+use super::interval::Estimate;
 use super::judge::{Judgement, Named};
 use super::locate::Channel;
 use super::model::{Rest, index};
@@ -26,6 +26,8 @@ pub struct Parts<'a> {
     pub search: &'a Search,
     /// What was judged.
     pub judgement: &'a Judgement,
+    /// The values of the answer with their intervals.
+    pub estimates: &'a [Estimate],
     /// Residuals of the user's own simulation, where it was handed over.
     pub handed: Option<Vec<Rest>>,
     /// What the recordings showed before.
@@ -54,7 +56,6 @@ impl Parts<'_> {
 #[must_use]
 pub fn compose(parts: Parts<'_>) -> Option<(Answer, Pictures)> {
     let stand = &parts.search.rounds.last()?.stand;
-    let estimates = interval::estimates(parts.study, stand, parts.judgement);
     let twin = parts.study.twin_rests(stand);
     let channels: Vec<Channel<'_>> = [false, true]
         .into_iter()
@@ -72,7 +73,7 @@ pub fn compose(parts: Parts<'_>) -> Option<(Answer, Pictures)> {
         located(&parts, &channels, main.channel)
     };
     locations.truncate(8);
-    let physics = physics(&parts, stand, &estimates, &locations, &main);
+    let physics = physics(&parts, stand, &locations, &main);
     let rivals = rivals(&parts, stand);
     let mut answer = Answer {
         schema: "palpate.diagnosis/1",
@@ -83,7 +84,7 @@ pub fn compose(parts: Parts<'_>) -> Option<(Answer, Pictures)> {
         locations,
         fit: main,
         channels: goodness,
-        nominal: nominal(&parts, &estimates),
+        nominal: nominal(&parts),
         checked: effects::ALL.iter().filter(|e| tried(&parts, e.card().place)).map(|e| e.card().name).collect(),
         findings: findings(&parts, stand),
     };
@@ -151,14 +152,8 @@ fn goodness(parts: &Parts<'_>, stand: &Stand, effort: bool) -> Option<Goodness> 
     })
 }
 
-fn physics(
-    parts: &Parts<'_>,
-    stand: &Stand,
-    estimates: &[Estimate],
-    locations: &[Location],
-    main: &Goodness,
-) -> Vec<Physics> {
-    let named = parts.judgement.named.iter().map(|named| effect(parts, stand, estimates, named));
+fn physics(parts: &Parts<'_>, stand: &Stand, locations: &[Location], main: &Goodness) -> Vec<Physics> {
+    let named = parts.judgement.named.iter().map(|named| effect(parts, stand, named));
     let mut all: Vec<Physics> = named.collect();
     if parts.judgement.left {
         all.push(unknown(parts, locations, main, !all.is_empty()));
@@ -180,15 +175,15 @@ fn gone(parts: &Parts<'_>, without: &HeldOut, with: &HeldOut, place: Place) -> f
     }
 }
 
-fn effect(parts: &Parts<'_>, stand: &Stand, estimates: &[Estimate], named: &Named) -> Physics {
+fn effect(parts: &Parts<'_>, stand: &Stand, named: &Named) -> Physics {
     let card = named.term.effect.card();
     let form = &card.forms[named.term.form];
     let start = stand.model.start_of(named.at);
     let parameters = form.parameters.iter().enumerate().map(|(at, parameter)| Value {
         name: parameter.name.to_owned(),
-        value: estimates[start + at].value,
+        value: parts.estimates[start + at].value,
         unit: parts.coordinate().pick(parameter.unit).to_owned(),
-        ci95: estimates[start + at].ends,
+        ci95: parts.estimates[start + at].ends,
     });
     Physics {
         name: card.name.to_owned(),
@@ -243,7 +238,7 @@ fn rivals(parts: &Parts<'_>, stand: &Stand) -> Vec<Rival> {
         .collect()
 }
 
-fn nominal(parts: &Parts<'_>, estimates: &[Estimate]) -> Vec<Nominal> {
+fn nominal(parts: &Parts<'_>) -> Vec<Nominal> {
     let c = parts.coordinate();
     let suffix = |unit: &str| effects::slug(unit);
     let rows = [
@@ -264,8 +259,8 @@ fn nominal(parts: &Parts<'_>, estimates: &[Estimate]) -> Vec<Nominal> {
             name: format!("{name}_{}", suffix(unit)),
             unit: unit.to_owned(),
             given: parts.study.given[at],
-            fitted: estimates[at].value,
-            ci95: estimates[at].ends,
+            fitted: parts.estimates[at].value,
+            ci95: parts.estimates[at].ends,
         })
         .collect()
 }

@@ -1,8 +1,9 @@
 //! Bounded nonlinear least squares of a model's values on whitened residuals: Levenberg and Marquardt's method.
 
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DVector};
 
 use super::model::{Channels, Model, Rest, Term, index};
+use super::product::{dot, energy};
 use super::track::Trial;
 use super::whiten::Whitener;
 use crate::effects::{Limit, Parameter, Place, Scene};
@@ -35,12 +36,6 @@ impl Data<'_> {
     pub fn energy(&self, model: &Model, values: &[f64]) -> f64 {
         energy(&self.residual(model, values, Channels::BOTH))
     }
-}
-
-/// Sum of squares.
-#[must_use]
-pub fn energy(values: &[f64]) -> f64 {
-    dot(values, values)
 }
 
 /// How one value of a model may move.
@@ -317,10 +312,4 @@ fn clamp(values: &mut [f64], axes: &[Axis]) {
     for (value, axis) in values.iter_mut().zip(axes) {
         *value = value.clamp(axis.low, axis.high);
     }
-}
-
-/// Inner product.
-#[must_use]
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    DVectorView::from_slice(a, a.len()).dot(&DVectorView::from_slice(b, b.len()))
 }

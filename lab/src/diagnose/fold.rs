@@ -5,6 +5,7 @@
 
 use super::fit::{self, Data};
 use super::model::{Channels, Model, Rest};
+use super::product::energy;
 use super::study::Study;
 use super::whiten::Whitener;
 use crate::effects::Scene;
@@ -65,7 +66,7 @@ fn frozen(study: &Study, whitener: &Whitener, model: &Model, values: &[Vec<f64>]
         let whites = [whitener.white(&by[0]), whitener.white(&by[1])];
         halves.iter().enumerate().map(|(row, half)| whites[1 - half][row]).collect()
     };
-    let energy = fit::energy(&judged(whitener));
+    let energy = energy(&judged(whitener));
     let powers = whitener.powers(&judged(&whitener.forgetful()));
     let mix = |trial: usize, effort: bool| {
         let pick = |rest: &Rest| if effort { rest.effort.clone() } else { rest.force.clone() };
@@ -85,7 +86,7 @@ fn frozen(study: &Study, whitener: &Whitener, model: &Model, values: &[Vec<f64>]
 pub fn as_given(study: &Study, whitener: &Whitener, model: &Model, values: &[f64]) -> HeldOut {
     let rests: Vec<Rest> = study.studio.trials.iter().map(|trial| model.rest(values, trial, Channels::BOTH)).collect();
     let powers = whitener.powers(&whitener.forgetful().white(&rests));
-    HeldOut { energy: fit::energy(&whitener.white(&rests)), powers, rests, taught: Vec::new() }
+    HeldOut { energy: energy(&whitener.white(&rests)), powers, rests, taught: Vec::new() }
 }
 
 /// Root mean square of the floor over the rows of a channel that were seen whole; `None` where the channel is not there.

@@ -1,18 +1,16 @@
 //! The improved simulation, as a rig file.
 
-use super::interval::{self, Estimate};
+use super::interval::Estimate;
 use super::judge::Judgement;
 use super::model::{Model, index};
-use super::select::Search;
+use super::stand::Stand;
 use super::study::Study;
 use crate::effects;
 use crate::rig::Rig;
 
 /// The rig file with refitted values and the named effects.
 #[must_use]
-pub fn rig_of(rig: &Rig, study: &Study, search: &Search, judgement: &Judgement) -> Option<Rig> {
-    let stand = &search.rounds.last()?.stand;
-    let estimates = interval::estimates(study, stand, judgement);
+pub fn rig_of(rig: &Rig, study: &Study, stand: &Stand, judgement: &Judgement, estimates: &[Estimate]) -> Rig {
     let named = !judgement.named.is_empty();
     let value = |at: usize| if named { estimates[at].value } else { judgement.nominal.values[at] };
     let mut fresh = rig.clone();
@@ -26,9 +24,9 @@ pub fn rig_of(rig: &Rig, study: &Study, search: &Search, judgement: &Judgement) 
         drive.viscous = value(index::VISCOUS);
     }
     if named {
-        fresh.effects = terms(rig, &stand.model, &estimates);
+        fresh.effects = terms(rig, &stand.model, estimates);
     }
-    Some(fresh)
+    fresh
 }
 
 fn terms(rig: &Rig, model: &Model, estimates: &[Estimate]) -> Vec<crate::rig::Effect> {

@@ -7,10 +7,8 @@
 //! the sensors are better than the rows one can afford, the Gaussian is passed in two: the law acts on the motion behind
 //! the first, and what it leaves passes the second.
 
-use super::fit::dot;
+use super::product::dot;
 use super::raw::Raw;
-use super::score::solve;
-use super::track::Track;
 use crate::rig::Rig;
 
 /// The filter and the clock of the analysis.
@@ -65,13 +63,6 @@ const UNSEEN: f64 = 0.05;
 /// Share of the sharpest filter that noise allows where nobody says how heavy the drive is.
 const UNTOLD: f64 = 0.3;
 
-/// How much less sharply it is looked at once more, and the share by which an inertia may differ then.
-const CALMER: f64 = 1.4;
-const ASTRAY: f64 = 0.05;
-
-/// Periods of the -3 dB frequency that all trials together have at the least: fewer tell no inertia.
-const LEAST_TURNS: f64 = 10.0;
-
 /// Widths after which the Gaussian ends: 3e-4 of its peak.
 const SUPPORT: f64 = 4.0;
 
@@ -122,29 +113,7 @@ impl Lens {
             (true, true) => (3.0 * 5f64.sqrt() * force / shaken).sqrt() / std::f64::consts::TAU,
             _ => f64::INFINITY,
         };
-        let lens = Self::cornered(raws, (corner, corner), 0.01, 0.5 * BUDGET);
-        if rig.drive.is_some() && raws.iter().all(|raw| raw.force.is_none()) { lens.settled(raws) } else { lens }
-    }
-
-    /// A filter behind which the inertia does not depend on how sharp it is: clocks that jitter and efforts that are told by a
-    /// current leave more in the balance than noise of the position would, and no force is there to say so.
-    fn settled(self, raws: &[Raw]) -> Self {
-        let period = self.period;
-        let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * period).sum();
-        let at = |corner: f64| {
-            let stride = ((1.0 / (period * ROWS * corner)).round() as usize).max(1);
-            Self::new(WIDTH / corner, period, stride)
-        };
-        let mut lens = self.clone();
-        while lens.corner() * seconds > LEAST_TURNS {
-            let calmer = at(lens.corner() / CALMER);
-            match (inertia(raws, &lens), inertia(raws, &calmer)) {
-                (Some(here), Some(there)) if (here - there).abs() > ASTRAY * there.abs() => lens = calmer,
-                (Some(_), Some(_)) => return lens,
-                _ => return self,
-            }
-        }
-        self
+        Self::cornered(raws, (corner, corner), 0.01, 0.5 * BUDGET)
     }
 
     /// Laws act behind the first of `corners` in Hz, what they leave is kept behind the second, as far as clock and `budget`
@@ -163,6 +132,14 @@ impl Lens {
             return Self::new(WIDTH / corner, period, stride(corner));
         }
         Self::in_two(WIDTH / corner, period, stride(parts as f64 * corner), parts)
+    }
+
+    /// The same `times` less sharp, in one pass.
+    #[must_use]
+    pub fn calmer(&self, times: f64) -> Self {
+        let corner = self.corner() / times;
+        let stride = ((1.0 / (self.period * ROWS * corner)).round() as usize).max(1);
+        Self::new(WIDTH / corner, self.period, stride)
     }
 
     /// A Gaussian of `blur` seconds in two passes: the first a part in `parts` as wide over rows of `period` seconds, looked
@@ -298,25 +275,6 @@ impl Lens {
             })
             .collect()
     }
-}
-
-/// The inertia that least squares give behind `lens`, beside viscous and dry friction, a weight that turns with the position,
-/// and an offset; `None` where they cannot be told apart.
-fn inertia(raws: &[Raw], lens: &Lens) -> Option<f64> {
-    let mut columns: [Vec<f64>; 6] = Default::default();
-    let mut efforts = Vec::new();
-    for raw in raws {
-        let track = Track::of(raw, lens);
-        for (at, effort) in track.effort.iter().flatten().enumerate().filter(|(at, _)| track.seen[*at]) {
-            let (position, velocity) = (track.position[at], track.velocity[at]);
-            let direction = if velocity.abs() <= track.speed_noise { 0.0 } else { velocity.signum() };
-            let row = [track.acceleration[at], velocity, direction, position.sin(), position.cos(), 1.0];
-            columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
-            efforts.push(*effort);
-        }
-    }
-    let directions: Vec<(usize, Vec<f64>)> = columns.into_iter().enumerate().collect();
-    solve(&directions, &efforts).map(|values| values[0]).filter(|inertia| inertia.is_finite())
 }
 
 fn effort_noise(raw: &Raw) -> f64 {

@@ -88,15 +88,9 @@ impl Raw {
     pub fn thinned(&self, parts: usize) -> Self {
         let half = parts / 2;
         let means = |values: &[f64], first: usize| -> Vec<f64> {
+            let rows = |at: usize| &values[first + at * parts..(first + (at + 1) * parts).min(values.len())];
             let mean = |rows: &[f64]| rows.iter().sum::<f64>() / rows.len() as f64;
-            (0..values.len() / parts)
-                .map(|at| {
-                    mean(
-                        &values
-                            [(first + at * parts).min(values.len() - 1)..(first + (at + 1) * parts).min(values.len())],
-                    )
-                })
-                .collect()
+            (0..values.len() / parts).map(|at| mean(rows(at))).collect()
         };
         let shift = half as f64 * self.period;
         Self {

@@ -2,8 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit::{self, Anchor, Axis, Data, dot};
+use super::fit::{self, Anchor, Axis, Data};
 use super::model::{Channels, Model, Term};
+use super::product::{dot, energy};
 use super::tones;
 use crate::effects::{self, Scene, Start, linear};
 
@@ -68,7 +69,7 @@ impl<'a> Remainder<'a> {
     /// Energy that is left once the model's own values have taken theirs.
     #[must_use]
     pub fn energy(&self) -> f64 {
-        fit::energy(&self.free)
+        energy(&self.free)
     }
 
     /// A direction without the model's own; `None` where nothing of it is left.

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::fit::{self, Data, Fit};
 use super::model::{Channels, Model, Rest, Term, index};
+use super::product::energy;
 use super::score::Remainder;
 use super::study::Study;
 use super::track::Trial;
@@ -256,5 +257,5 @@ impl Study {
 
 /// Energy of all that twins leave, of both channels.
 fn loudness(samples: &[Vec<Rest>]) -> f64 {
-    samples.iter().flatten().map(|rest| fit::energy(&rest.force) + fit::energy(&rest.effort)).sum()
+    samples.iter().flatten().map(|rest| energy(&rest.force) + energy(&rest.effort)).sum()
 }

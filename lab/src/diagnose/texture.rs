@@ -3,8 +3,9 @@
 //! What effects are asked one by one, these coarse shapes are asked together. Where they find what no effect explains,
 //! the honest answer is `unknown`.
 
-use super::fit::{Data, dot};
+use super::fit::Data;
 use super::model::{Model, Rest, index};
+use super::product::dot;
 use super::score::{Remainder, solve};
 use super::track::Track;
 use crate::effects::Scene;

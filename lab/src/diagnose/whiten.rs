@@ -6,8 +6,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit::{self, dot};
 use super::model::Rest;
+use super::product::{dot, energy};
 use super::track::{Track, Trial};
 
 /// Order of the predictor.
@@ -230,7 +230,7 @@ impl Whitener {
     #[must_use]
     pub fn powers(&self, white: &[f64]) -> [f64; 2] {
         let (force, effort) = white.split_at(self.force_rows());
-        [force, effort].map(|rows| fit::energy(rows) / rows.len().max(1) as f64)
+        [force, effort].map(|rows| energy(rows) / rows.len().max(1) as f64)
     }
 
     /// The whitened residuals of all trials; a channel that was not asked for is zero.

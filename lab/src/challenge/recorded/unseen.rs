@@ -8,7 +8,9 @@ use anyhow::{Context as _, Result};
 
 use crate::diagnose::lens::Lens;
 use crate::diagnose::model::{Channels, Rest, index};
+use crate::diagnose::product::energy;
 use crate::diagnose::raw::Raw;
+use crate::diagnose::sharpness::lenses;
 use crate::diagnose::study::Study;
 use crate::diagnose::track::Track;
 use crate::diagnose::twin::Studio;
@@ -81,10 +83,10 @@ pub fn left<const N: usize>(models: [&Rig; N], origin: &str, trials: &[Recording
     let (mut sums, mut rows) = ([0.0; N], 0usize);
     for trial in trials {
         let raws = sensed(models[0], origin, std::slice::from_ref(trial))?;
-        let lenses = (Lens::for_contact(models[0], &raws), Lens::for_drive(models[0], &raws));
+        let lenses = lenses(models[0], &raws);
         for (at, model) in models.iter().enumerate() {
             let scored = scored(model, origin, &raws, &lenses)?;
-            sums[at] += scored.iter().map(|value| value * value).sum::<f64>();
+            sums[at] += energy(&scored);
             rows += if at == 0 { scored.len() } else { 0 };
         }
     }
@@ -171,10 +173,6 @@ fn before(study: &Study, end: usize, surface: f64) -> Vec<f64> {
     let Rest { force, .. } = study.nominal.rest(&values, trial, Channels { force: true, effort: false });
     let seen = force.iter().zip(&trial.contact.seen).take(end);
     seen.map(|(value, seen)| if *seen { *value } else { 0.0 }).collect()
-}
-
-fn energy(values: &[f64]) -> f64 {
-    values.iter().map(|value| value * value).sum()
 }
 
 #[cfg(test)]
