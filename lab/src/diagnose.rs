@@ -14,6 +14,7 @@ pub mod compose;
 pub mod experiment;
 pub mod fit;
 pub mod fold;
+pub mod hum;
 pub mod improved;
 pub mod interval;
 pub mod judge;
@@ -97,7 +98,17 @@ pub fn diagnose(
 pub fn sensed(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Vec<Raw>> {
     command::ensure_usable(rig, trials, origin)?;
     let period = common_period(trials);
-    Ok(trials.iter().map(|trial| Raw::of(trial, Figures::of(rig, trial), period)).collect())
+    Ok(trials.iter().map(|trial| listened(rig, Raw::of(trial, Figures::of(rig, trial), period), trial)).collect())
+}
+
+/// `raw` of `trial`, its figures told without a tone of the mains, which is no noise.
+fn listened(rig: &Rig, raw: Raw, trial: &Recording) -> Raw {
+    let Some(tone) = hum::heard(&raw) else { return raw };
+    let mut quiet = trial.clone();
+    if let Some(force) = &mut quiet.force {
+        force.iter_mut().zip(&trial.time).for_each(|(force, time)| *force -= tone.at(time - raw.origin));
+    }
+    Raw { figures: Figures::of(rig, &quiet), hum: Some(tone.frequency), ..raw }
 }
 
 /// The trials `raws` as they are looked at, and the nominal model that they are held against.

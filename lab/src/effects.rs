@@ -16,6 +16,7 @@ mod reading;
 mod resolved;
 mod scene;
 mod sensor;
+mod side;
 mod touch;
 
 pub use card::{Card, Form, Limit, Parameter, Place, Stage, key_of, slug};
@@ -25,6 +26,7 @@ pub use push::Push;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 pub use scene::{Abscissa, Scene, Start, Tones, Weight, geometric, linear};
+pub use side::Side;
 pub use touch::{Touch, gate, ramp};
 
 /// What an effect with a hidden state carries from one sample to the next; all zero at the start of a trial.
@@ -54,6 +56,12 @@ pub trait Effect: Sync {
 
     /// Acts on the drive.
     fn push(&self, _form: usize, _values: &[f64], _memory: &mut Memory, _push: &mut Push) {}
+
+    /// What a motor's own motion, ahead of the tool's, takes from the effort along a recording, row by row. Effects that say
+    /// so do not `push` there.
+    fn ahead(&self, _form: usize, _values: &[f64], _side: &Side<'_>) -> Option<Vec<f64>> {
+        None
+    }
 
     /// Acts on the reading of the force sensor, over a whole trial.
     fn read(&self, _form: usize, _values: &[f64], _reading: &mut Reading<'_>) {}

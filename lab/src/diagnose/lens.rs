@@ -78,6 +78,14 @@ const FEW: f64 = 1_000.0;
 /// How much sharper laws may look than the rows that are kept of what they leave.
 const SHARPER: f64 = 3.0;
 
+/// Share of a tone's frequency at which the filter that has to show it ends: a third of it passes.
+const SHOWN: f64 = 0.6;
+
+/// The frequency down to which the force has to be looked at for a tone that stands out of it.
+fn heard(raws: &[Raw]) -> f64 {
+    SHOWN * raws.iter().filter_map(|raw| raw.hum).fold(0.0, f64::max)
+}
+
 impl Lens {
     /// The sharpest filter for the contact: what position noise does to the predicted force stays near what force noise
     /// does, within what the clock allows.
@@ -98,7 +106,7 @@ impl Lens {
         let sharpest = raws.first().map_or(corner, |raw| corner.min(MOST / raw.period));
         let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
         let whole = calm.min(0.5 * sharpest).max(FEW / (ROWS * seconds.max(f64::MIN_POSITIVE))).min(corner);
-        Self::cornered(raws, (corner, whole), 0.02, BUDGET)
+        Self::cornered(raws, (corner, whole), (0.02, heard(raws)), BUDGET)
     }
 
     /// The sharpest filter for the drive: the same of what position noise does to inertia times acceleration.
@@ -113,17 +121,18 @@ impl Lens {
             (true, true) => (3.0 * 5f64.sqrt() * force / shaken).sqrt() / std::f64::consts::TAU,
             _ => f64::INFINITY,
         };
-        Self::cornered(raws, (corner, corner), 0.01, 0.5 * BUDGET)
+        Self::cornered(raws, (corner, corner), (0.01, 0.0), 0.5 * BUDGET)
     }
 
     /// Laws act behind the first of `corners` in Hz, what they leave is kept behind the second, as far as clock and `budget`
-    /// of rows allow, not below the share `least` of the rate, as far as that is no quicker than it need be.
-    fn cornered(raws: &[Raw], corners: (f64, f64), least: f64, budget: f64) -> Self {
+    /// of rows allow, not below a share of the rate, as far as that is no quicker than it need be, and not below a frequency in
+    /// Hz: the two of `least`.
+    fn cornered(raws: &[Raw], corners: (f64, f64), least: (f64, f64), budget: f64) -> Self {
         let period = raws.first().map_or(1.0, |raw| raw.period);
         let rate = period.recip();
         let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
         let affordable = budget / (ROWS * seconds.max(period));
-        let least = least * rate.min(PLENTY / seconds.max(period));
+        let least = (least.0 * rate.min(PLENTY / seconds.max(period))).max(least.1);
         let sharpest = corners.0.max(least).min(MOST * rate);
         let corner = corners.1.min(affordable).max(least).min(MOST * rate);
         let stride = |corner: f64| ((rate / (ROWS * corner)).round() as usize).max(1);

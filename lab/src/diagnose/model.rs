@@ -2,7 +2,7 @@
 
 use super::track::{Track, Trial};
 use crate::effects::contact_law::{Active, Along};
-use crate::effects::{Effect, Memory, Parameter, Place, Push, Reading, Stage};
+use crate::effects::{Effect, Memory, Parameter, Place, Push, Reading, Side, Stage};
 use crate::rig::{Contact, Drive};
 
 /// An effect in a model.
@@ -259,9 +259,20 @@ impl Model {
     /// What the sensor shows of `borne`.
     #[must_use]
     pub fn reading(&self, values: &[f64], trial: usize, track: &Track, borne: &[f64]) -> Vec<f64> {
+        self.sensed(values, trial, track, borne, track.blur)
+    }
+
+    /// The rows that a sensor writes down, before any filter, of `borne` that is smooth.
+    #[must_use]
+    pub fn rows(&self, values: &[f64], trial: usize, track: &Track, borne: &[f64]) -> Vec<f64> {
+        self.sensed(values, trial, track, borne, 0.0)
+    }
+
+    fn sensed(&self, values: &[f64], trial: usize, track: &Track, borne: &[f64], added_blur: f64) -> Vec<f64> {
         let mut force = borne.to_vec();
         let acceleration = &track.acceleration;
-        let mut reading = Reading { start: 0.0, step: track.step, blur: track.blur, acceleration, force: &mut force };
+        let (step, blur) = (track.step, track.blur);
+        let mut reading = Reading { start: 0.0, step, blur, added_blur, acceleration, force: &mut force };
         let mut sensors = self.at(Place::Sensor, values, trial);
         sensors.sort_by_key(|(term, _)| term.effect.card().stage);
         for (term, values) in &sensors {
@@ -282,6 +293,21 @@ impl Model {
         let cut = self.effort_limit(values, trial).and_then(|limit| Some(track.command.as_ref()?.cut(limit)));
         let (effort, rate) = cut.as_ref().map_or((effort, rate), |[effort, rate]| (effort, rate));
         let mut memories: Vec<Memory> = vec![Memory::default(); acting.len()];
+        let borne: Vec<f64> = (0..track.len()).map(&force).collect();
+        let driven: Vec<f64> = effort.iter().zip(rate).map(|(effort, rate)| effort - late * rate).collect();
+        let side = Side {
+            step: track.step,
+            blur: track.blur,
+            inertia: drive.inertia,
+            viscous: drive.viscous,
+            velocity: &track.velocity,
+            acceleration: &track.acceleration,
+            effort: &driven,
+            force: &borne,
+            noise: [track.speed_noise, track.shake_noise, track.force_noise],
+        };
+        let ahead: Vec<Option<Vec<f64>>> =
+            acting.iter().map(|(term, values)| term.effect.ahead(term.form, values, &side)).collect();
         let (mut commanded, mut transmitted) = (0.0, 0.0);
         let mut rest: Vec<f64> = (0..track.len())
             .map(|at| {
@@ -296,16 +322,19 @@ impl Model {
                     blur: track.blur,
                     speed_noise: track.speed_noise,
                     still: track.still[at],
-                    force: force(at),
+                    force: borne[at],
                     force_bend: track.force_bend.as_ref().map_or(0.0, |bend| bend[at]),
-                    effort: effort[at] - late * rate[at],
+                    effort: driven[at],
                     effort_rate: rate[at],
                     inertia: drive.inertia,
                     viscous: drive.viscous,
                     resistance: 0.0,
                 };
-                for ((term, values), memory) in acting.iter().zip(&mut memories) {
-                    term.effect.push(term.form, values, memory, &mut push);
+                for (((term, values), memory), ahead) in acting.iter().zip(&mut memories).zip(&ahead) {
+                    match ahead {
+                        Some(taken) => push.resistance += taken[at],
+                        None => term.effect.push(term.form, values, memory, &mut push),
+                    }
                 }
                 commanded += effort[at] * effort[at];
                 transmitted += push.effort * push.effort;

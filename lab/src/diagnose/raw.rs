@@ -23,6 +23,8 @@ pub struct Raw {
     pub good: Vec<bool>,
     /// What the sensors leave.
     pub figures: Figures,
+    /// Frequency in Hz of a tone of the mains that stands out of the force.
+    pub hum: Option<f64>,
     /// Rows in the recording that are no measurement, as far as one row shows it.
     pub dropouts: Vec<f64>,
     /// Start and length of each gap, s.
@@ -74,6 +76,7 @@ impl Raw {
             effort,
             good,
             figures,
+            hum: None,
             dropouts,
             gaps,
         }
@@ -102,6 +105,7 @@ impl Raw {
             effort: self.effort.as_ref().map(|effort| means(effort, half)),
             good: self.good.chunks_exact(parts).map(|rows| rows.iter().all(|good| *good)).collect(),
             figures: self.figures.thinned(parts),
+            hum: self.hum,
             dropouts: self.dropouts.iter().map(|at| at - shift).collect(),
             gaps: self.gaps.iter().map(|(start, span)| (start - shift, *span)).collect(),
         }
@@ -171,6 +175,7 @@ mod tests {
             effort: Some(line(0.5)),
             good: (0..rows).map(|row| row != 17).collect(),
             figures: Figures { position: figures, force: None, effort: None },
+            hum: None,
             dropouts: vec![3.0],
             gaps: Vec::new(),
         }

@@ -74,10 +74,10 @@ const MUCH: f64 = 30.0;
 const DOUBTFUL: f64 = 1.2;
 
 /// Part of a rounding's power that is taken for possible.
-const DOUBT: f64 = 1.0;
+const DOUBT: f64 = 1.4;
 
 /// The same of a rounding's power in the balance of the drive.
-const SHAKEN: f64 = 0.012;
+const SHAKEN: f64 = 0.02;
 
 impl Study {
     /// Stands on `model`: fits it under floors told by twins, and asks the recording and `count` twins the same questions.
@@ -169,7 +169,10 @@ impl Study {
         let moved = origin.iter().zip(axes).enumerate().map(|(at, (origin, axis))| {
             let mean = shifts.iter().map(|shift| shift[at]).sum::<f64>() / shifts.len().max(1) as f64;
             let most = FAR * axis.scale;
-            (origin - mean.max(-most).min(most)).clamp(axis.low, axis.high)
+            let moved = (origin - mean.max(-most).min(most)).clamp(axis.low, axis.high);
+            // A bias of more than half an effect's value is not told from twins: the effect is not turned off by it.
+            let part = if at < model.nominals() { f64::INFINITY } else { FAR * values[at].abs() };
+            moved.max(values[at] - part).min(values[at] + part)
         });
         moved.collect()
     }

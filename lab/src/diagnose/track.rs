@@ -26,6 +26,10 @@ pub struct Track {
     pub still: Vec<f64>,
     /// What of the velocity is noise.
     pub speed_noise: f64,
+    /// What of the acceleration is.
+    pub shake_noise: f64,
+    /// What of the force is.
+    pub force_noise: f64,
     /// Speed at which the encoder steps once within the filter.
     pub pace: f64,
     /// Force reading.
@@ -101,7 +105,7 @@ impl Track {
             let Passes { first, second } = passes;
             Box::new(Near { track: Self::of(raw, first), rest: second.clone() })
         });
-        let [_, slope_noise, bend_noise] = lens.noise();
+        let [level_noise, slope_noise, bend_noise] = lens.noise();
         let noise = raw.figures.position.noise;
         let (speed_noise, shake_noise) = (noise * slope_noise, noise * bend_noise);
         let (velocity, acceleration) = (lens.slope(&raw.position), lens.bend(&raw.position));
@@ -119,6 +123,8 @@ impl Track {
             jerk: lens.jerk(&raw.position),
             snap: lens.snap(&raw.position),
             speed_noise,
+            shake_noise,
+            force_noise: raw.figures.force.map_or(0.0, |force| force.noise * level_noise),
             pace: raw.figures.position.resolution / lens.blur,
             force: raw.force.as_ref().map(|force| lens.level(force)),
             force_rate: raw.force.as_ref().map(|force| lens.slope(force)),

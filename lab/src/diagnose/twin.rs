@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::lens::Lens;
 use super::model::{Channels, Model, Rest, index};
 use super::raw::Raw;
+use super::score::solve;
 use super::track::{Track, Trial};
 use super::unround::unround;
 use crate::effects::Reading;
@@ -93,7 +94,7 @@ impl Studio {
             let (borne, reading) = match model.contact {
                 Some(bilateral) => {
                     let borne = model.contact_force(values, trial, fine, bilateral);
-                    let mut reading = model.reading(values, trial, fine, &borne);
+                    let mut reading = model.rows(values, trial, fine, &borne);
                     late(&mut reading, fine, values[index::FORCE_TIMING]);
                     (Some(borne), Some(reading))
                 }
@@ -208,7 +209,12 @@ impl Studio {
         let rests = |trials: &[Trial]| -> Vec<Vec<f64>> {
             trials.iter().map(|trial| pick(model.rest(values, trial, channels))).collect()
         };
-        let seen = rests(&self.trials);
+        let mut seen = rests(&self.trials);
+        if !effort {
+            for ((seen, raw), trial) in seen.iter_mut().zip(&self.raws).zip(&self.trials) {
+                raw.hum.iter().for_each(|frequency| without_tone(seen, frequency * trial.contact.step));
+            }
+        }
         let numbers = (0..FOR_NOISE as u64).into_par_iter();
         let twins: Vec<Vec<Vec<f64>>> = numbers.map(|number| rests(&self.twin(truth, known, number))).collect();
         let lens = if effort { &self.drive_lens } else { &self.lens };
@@ -247,6 +253,17 @@ fn held(values: &[f64], at: usize) -> f64 {
     0.5 * (values[at] + values[(at + 1).min(values.len() - 1)])
 }
 
+/// Takes off `values` what goes with a tone of `turns` a row: it is no noise, however restless.
+fn without_tone(values: &mut [f64], turns: f64) {
+    let angle = |at: usize| std::f64::consts::TAU * turns * at as f64;
+    let waves = [f64::sin, f64::cos].map(|wave| (0..values.len()).map(|at| wave(angle(at))).collect::<Vec<f64>>());
+    let directions: Vec<(usize, Vec<f64>)> = waves.into_iter().enumerate().collect();
+    let Some(parts) = solve(&directions, values) else { return };
+    for ((_, wave), part) in directions.iter().zip(parts.iter()) {
+        values.iter_mut().zip(wave).for_each(|(value, wave)| *value -= part * wave);
+    }
+}
+
 /// Stretches of at least `least` rows in which a stepping encoder does not step.
 fn rests(raw: &Raw, least: usize) -> Vec<(usize, usize)> {
     let step = raw.figures.position.resolution;
@@ -267,8 +284,14 @@ fn rests(raw: &Raw, least: usize) -> Vec<(usize, usize)> {
 /// What a clock that is a fraction of a sample late writes down of `force`.
 fn late(force: &mut [f64], track: &Track, by: f64) {
     if by != 0.0 {
-        let mut reading =
-            Reading { start: 0.0, step: track.step, blur: track.blur, acceleration: &track.acceleration, force };
+        let mut reading = Reading {
+            start: 0.0,
+            step: track.step,
+            blur: track.blur,
+            added_blur: 0.0,
+            acceleration: &track.acceleration,
+            force,
+        };
         reading.delay(by);
     }
 }

@@ -11,6 +11,8 @@ pub struct Reading<'a> {
     pub step: f64,
     /// Width of the smoothing filter that the samples have passed, s; zero in a simulation.
     pub blur: f64,
+    /// The same of what the sensor adds by itself: zero where rows of a sensor are made of a smoothed force.
+    pub added_blur: f64,
     /// Acceleration of the tool.
     pub acceleration: &'a [f64],
     /// In: the force at the sensor. Out: its reading.
@@ -67,9 +69,9 @@ impl Reading<'_> {
         }
     }
 
-    /// What the smoothing filter leaves of a sine of that frequency.
+    /// What the smoothing filter leaves of a sine of that frequency that the sensor adds.
     #[must_use]
     pub fn passes(&self, frequency: f64) -> f64 {
-        (-0.5 * (std::f64::consts::TAU * frequency * self.blur).powi(2)).exp()
+        (-0.5 * (std::f64::consts::TAU * frequency * self.added_blur).powi(2)).exp()
     }
 }

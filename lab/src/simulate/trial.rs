@@ -190,7 +190,8 @@ impl<'a> Run<'a> {
         actives.retain(|active| active.effect.card().place == Place::Sensor);
         actives.sort_by_key(crate::effects::Active::stage);
         for active in actives {
-            let mut reading = Reading { start: 0.0, step, blur: 0.0, acceleration: &self.acceleration, force };
+            let mut reading =
+                Reading { start: 0.0, step, blur: 0.0, added_blur: 0.0, acceleration: &self.acceleration, force };
             active.effect.read(active.form, active.values, &mut reading);
         }
         force.iter_mut().for_each(|force| *force = self.load_cell.read(*force, &mut self.chance));

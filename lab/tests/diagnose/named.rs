@@ -119,6 +119,51 @@ fn a_cable_that_gives() {
     found(&case.diagnose(&[]), "transmission_compliance", &expected);
 }
 
+/// A tone of 50 Hz where the filter of a coarse encoder's contact would end at 20.
+#[test]
+fn a_hum_above_the_band() {
+    let wish = Wish {
+        what: Some(What::single("mains_hum", Some(1.0))),
+        sensors: Some(Grade::Coarse),
+        reference: None,
+        ..Wish::default()
+    };
+    let drawn = draw(91, 1, &wish).unwrap();
+    let case = Case { folder: TempDir::new().unwrap() };
+    drawn.write(case.folder.path()).unwrap();
+    let answer = case.diagnose(&[]);
+    names(&answer, "mains_hum");
+    let parameters = &answer["physics"][0]["parameters"];
+    let [sine, cosine, frequency] = [0, 1, 2].map(|at| parameters[at]["value"].as_f64().unwrap());
+    let truth = &drawn.truth.effects[0].parameters;
+    println!("{} of {} at {frequency} of {} Hz", sine.hypot(cosine), truth[0].value, truth[1].value);
+    // A third passes the filter: what is lost there has to be given back, in the recording and in its twins alike.
+    assert!((sine.hypot(cosine) / truth[0].value - 1.0).abs() < 0.1);
+    // A tenth of a turn over the trial.
+    assert!((frequency - truth[1].value).abs() < 0.005);
+}
+
+/// Two masses with teeth between them, followed at 20 kHz: the motor is never seen, and strikes within the filter's width.
+#[test]
+fn a_gear_with_play() {
+    let wish = Wish { what: Some(What::single("backlash", Some(1.2))), sensors: Some(Grade::Fine), ..Wish::default() };
+    let drawn = draw(78, 5, &wish).unwrap();
+    let case = Case { folder: TempDir::new().unwrap() };
+    drawn.write(case.folder.path()).unwrap();
+    let answer = case.diagnose(&[]);
+    names(&answer, "backlash");
+    let parameters = &answer["physics"][0]["parameters"];
+    let [gap, share] = [0, 1].map(|at| parameters[at]["value"].as_f64().unwrap());
+    let truth = &drawn.truth.effects[0].parameters;
+    let motor = 1.0 - truth[1].value / drawn.truth.nominal.mass;
+    println!("gap {gap:.3e} of {:.3e}, motor's share {share:.3} of {motor:.3}", truth[0].value);
+    // What is seen is the motor's momentum: gap and mass lie on each other, and the way through the gap is taken for a cubic, which
+    // costs up to two fifths.
+    assert!((gap * share / (truth[0].value * motor) - 1.0).abs() < 0.45, "{gap} {share}");
+    // The drive lay at 2.3 floors; a quarter of that is the law's.
+    assert!(fit(&answer, "improved") < 1.3 * fit(&answer, "noise_floor"), "{}", answer["fit"]);
+}
+
 #[test]
 fn a_drive_that_rubs() {
     let case = Case::new(&driven(0), driven, "[[effect]]\nname = \"coulomb_friction\"\nlevel_n = 0.4\n");

@@ -99,7 +99,8 @@ impl<'a> Bench<'a> {
         seen: Vec<bool>,
     ) -> Track {
         let noise = self.study.studio.raws.iter().map(|raw| raw.figures.position.noise).fold(0.0, f64::max);
-        let [_, slope_noise, bend_noise] = lens.noise();
+        let [level_noise, slope_noise, bend_noise] = lens.noise();
+        let force_noise = self.study.studio.raws.iter().filter_map(|raw| raw.figures.force).map(|force| force.noise);
         // As a recording of it would be looked at.
         let still = |(v, a): (&f64, &f64)| {
             f64::from(v.abs() <= 3.0 * noise * slope_noise && a.abs() <= 3.0 * noise * bend_noise)
@@ -109,6 +110,8 @@ impl<'a> Bench<'a> {
             blur: lens.blur,
             still: velocity.iter().zip(&acceleration).map(still).collect(),
             speed_noise: noise * slope_noise,
+            shake_noise: noise * bend_noise,
+            force_noise: level_noise * force_noise.fold(0.0, f64::max),
             position,
             velocity,
             jerk: slope(&acceleration, lens.step()),

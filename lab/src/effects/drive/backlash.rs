@@ -1,6 +1,9 @@
 //! Play between motor and tool.
 
-use crate::effects::{Card, Course, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use super::link::Link;
+use crate::effects::{
+    Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Side, Stage, Start, geometric, linear,
+};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -21,7 +24,7 @@ static CARD: Card = Card {
             Parameter::fixed(
                 "link_stiffness",
                 Word::new("N/m", "N m/rad"),
-                "of the flanks: as stiff as the analysis resolves",
+                "of the flanks, in a simulation: as stiff as the recording could not tell from rigid",
             ),
         ],
     }],
@@ -30,72 +33,98 @@ static CARD: Card = Card {
     source: "M. Nordin, P.-O. Gutman, Automatica 38 (2002) 1633",
 };
 
-/// Motor and tool, coupled by a spring with a gap.
-pub struct Link {
-    /// Of the spring.
-    pub stiffness: f64,
-    /// Beside the spring.
-    pub damping: f64,
-    /// Of the motor's side.
-    pub inertia: f64,
-    /// Whole width of the gap.
-    pub gap: f64,
+/// Swings of the flanks, over those of the slowest link that can be told: stiff beside all that a recording shows.
+const FLANKS: f64 = 2.2;
+
+/// Deviations of noise beyond which it is decided which side bears.
+const DECIDED: f64 = 3.0;
+
+/// Widths of the filter beyond which nothing is left of a step.
+const REACH: f64 = 5.0;
+
+/// Parts of the gap that the motor has gone through at the middles of four equal parts of its way, as shares of the time:
+/// the effort grows from nothing, and the way as the cube of the time.
+const QUARTERS: [f64; 4] = [0.5, 0.721, 0.855, 0.956];
+
+/// Longest way through the gap that is told, in widths of the filter: of a tool that rests, nothing says when the motor left.
+const LONGEST: f64 = 12.0;
+
+/// A change of the side that bears.
+struct Crossing {
+    /// Row at which the motor strikes.
+    strikes: f64,
+    /// One where it pushes from then on, minus one where it holds back.
+    turn: f64,
 }
 
-/// Most integration steps between two samples: beyond them the link is as good as rigid.
-const MOST_STEPS: f64 = 64.0;
+/// Lengths of the way through the gap that are tried.
+const SPANS: usize = 12;
 
-impl Link {
-    /// Runs the motor's side over the last step and replaces the effort by what the link transmits.
-    pub fn carry(&self, memory: &mut Memory, push: &mut Push) {
-        // memory: motor position, its velocity, tool position, tool velocity, effort an instant ago, its rate, whether known.
-        push.inertia -= self.inertia;
-        if self.stiffness <= 0.0 || self.inertia <= 0.0 {
-            push.inertia += self.inertia.max(0.0);
-            return;
+/// Rows after the side is decided within which the strike is looked for.
+const LATE: usize = 2;
+
+/// The changes of the side that bears.
+fn crossings(side: &Side<'_>, tool: f64) -> Vec<Crossing> {
+    let [speed, shake, force] = side.noise;
+    let least = DECIDED * ((tool * shake).powi(2) + (side.viscous * speed).powi(2) + force * force).sqrt();
+    let mut crossings = Vec::new();
+    let mut bears = 0.0;
+    for at in 0..side.velocity.len() {
+        let now = side.borne(tool, at);
+        if now.abs() > least {
+            let turn = now.signum();
+            if turn != bears && bears != 0.0 {
+                crossings.push(Crossing {
+                    strikes: strike(&|at| turn * side.borne(tool, at), at, side.velocity.len()),
+                    turn,
+                });
+            }
+            bears = turn;
         }
-        let steps = (push.step * self.fastest() / 0.2).ceil();
-        if steps > MOST_STEPS {
-            push.inertia += self.inertia;
-            return;
-        }
-        if memory[6] == 0.0 {
-            let stretch = push.effort / self.stiffness;
-            let lead = stretch + 0.5 * self.gap * stretch.signum();
-            let (position, velocity) = (push.position, push.velocity);
-            *memory = [position + lead, velocity, position, velocity, push.effort, push.effort_rate, 1.0];
-        }
-        let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, _] = *memory;
-        let part = steps.max(1.0).recip();
-        let span = push.step * part;
-        let lightness = span / self.inertia;
-        let mix = |from: f64, to: f64, part: f64| from + part * (to - from);
-        // The tool between two samples, by position and rate at both: a chord would leave k step^2 / 12 of false inertia.
-        let way = Course::smooth([tool, tool_speed], [push.position, push.velocity], push.step);
-        let effort = push.effort_since([effort, effort_rate]);
-        for step in 0..steps as usize {
-            let start = step as f64 * part;
-            let middle = start + 0.5 * part;
-            // Half the way, the force there, the other half: motor and tool are compared at one instant, or a common
-            // motion would be pushed on by k span / 2 times its speed.
-            motor += 0.5 * span * speed;
-            let pull = self.pull(motor - way.at(middle), speed - mix(tool_speed, push.velocity, start));
-            speed += lightness * (effort.at(middle) - pull);
-            motor += 0.5 * span * speed;
-        }
-        *memory = [motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0];
-        push.effort = self.pull(motor - push.position, speed - push.velocity);
-        push.effort_rate = self.stiffness * (speed - push.velocity);
+    }
+    crossings
+}
+
+/// Where `force` peaks at row `at` or soon after it, of `rows`: the motor strikes, and what the tool bears jumps.
+fn strike(force: &dyn Fn(usize) -> f64, at: usize, rows: usize) -> f64 {
+    let mut peak = at;
+    while peak + 1 < rows && peak < at + LATE && force(peak + 1) > force(peak) {
+        peak += 1;
+    }
+    if peak == 0 || peak + 1 >= rows {
+        return peak as f64;
+    }
+    let [before, here, after] = [peak - 1, peak, peak + 1].map(force);
+    let bend = before - 2.0 * here + after;
+    peak as f64 + if bend < 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 }
+}
+
+impl Crossing {
+    /// Second derivative at row `at`, behind the filter, of the motor's lead over the tool, whose way through a gap of one took `span`
+    /// rows.
+    fn bend(&self, side: &Side<'_>, span: f64, at: usize) -> f64 {
+        let quarter = |part: &f64| {
+            let past = (at as f64 - self.strikes + (1.0 - part) * span) * side.step / side.blur;
+            -past * (-0.5 * past * past).exp()
+        };
+        let sum: f64 = QUARTERS.iter().map(quarter).sum();
+        self.turn * 0.25 * sum / (std::f64::consts::TAU.sqrt() * side.blur * side.blur)
     }
 
-    fn fastest(&self) -> f64 {
-        (self.stiffness / self.inertia).sqrt().max(self.damping / self.inertia)
-    }
-
-    fn pull(&self, lead: f64, speed: f64) -> f64 {
-        let half = 0.5 * self.gap;
-        let beyond = lead - lead.max(-half).min(half);
-        if self.gap > 0.0 && beyond == 0.0 { 0.0 } else { self.stiffness * beyond + self.damping * speed }
+    /// First row of the crossing, and what it takes of the effort from there on, where a gap of one takes `size`: of all lengths of
+    /// the way the one that leaves the least of the balance. How long it took depends on an effort that grows from nothing,
+    /// and is told by the recording itself.
+    fn taken(&self, side: &Side<'_>, size: f64) -> (usize, Vec<f64>) {
+        let longest = LONGEST * side.blur / side.step;
+        let first = (self.strikes - longest).max(0.0) as usize;
+        let last = ((self.strikes + REACH * side.blur / side.step) as usize).min(side.velocity.len() - 1);
+        let tried = geometric(0.5, longest, SPANS).into_iter().map(|span| {
+            let taken: Vec<f64> = (first..=last).map(|at| size * self.bend(side, span, at)).collect();
+            let left: f64 = taken.iter().zip(first..).map(|(taken, at)| (side.rest(at) - taken).powi(2)).sum();
+            (left, taken)
+        });
+        let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
+        (first, best.map_or_else(Vec::new, |(_, taken)| taken))
     }
 }
 
@@ -105,20 +134,26 @@ impl Effect for Backlash {
     }
 
     fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
-        let way = scene.travel.1 - scene.travel.0;
-        // Without a force sensor nothing but the noise of the acceleration stands against a hidden motor.
+        // Without a force sensor nothing tells which side of the teeth bears.
         if !scene.has_force {
             return Vec::new();
         }
-        let mut starts = Vec::new();
-        for gap in geometric(0.0005 * way, 0.2 * way, 8) {
-            for share in [0.2, 0.6] {
-                let motor = share * scene.inertia;
-                let pulse = 1.1 * scene.link_rate();
-                starts.push(Start::at(&[gap, share, motor * pulse * pulse]));
-            }
+        let (way, pulse) = (scene.travel.1 - scene.travel.0, FLANKS * scene.link_rate());
+        let start = |share: f64| Start::sized(&[0.01 * way, share, share * scene.inertia * pulse * pulse], &[0]);
+        linear(0.1, 0.8, 8).into_iter().map(start).collect()
+    }
+
+    /// The motor rests against the side that bears, and what the tool's side bears is seen: where that changes its sign, the motor
+    /// has gone through the gap. What that takes is `m1` times the second derivative of its way, which ends in a stroke. A motor
+    /// that is followed through the gap instead lands where the noise of the tool's position takes it.
+    fn ahead(&self, _form: usize, values: &[f64], side: &Side<'_>) -> Option<Vec<f64>> {
+        let motor = values[1] * side.inertia;
+        let mut all = vec![0.0; side.velocity.len()];
+        for crossing in crossings(side, side.inertia - motor) {
+            let (first, taken) = crossing.taken(side, motor * values[0]);
+            all[first..].iter_mut().zip(&taken).for_each(|(all, taken)| *all += taken);
         }
-        starts
+        Some(all)
     }
 
     fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {

@@ -1,6 +1,6 @@
 //! A cable, belt or gear that gives.
 
-use crate::effects::drive::backlash::Link;
+use super::link::Link;
 use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
 use crate::rig::Word;
 
