@@ -64,6 +64,24 @@ fn a_soft_sample_relaxes_and_stiffens() {
     is_named("tissue_s230515", "tissue_indentation/s230515_P002_1.csv", &effects);
 }
 
+/// Pressed and held, never let go: neither a slow sensor nor its zero shows, and what else bends the curve halves nothing.
+#[test]
+fn a_soft_sample_that_is_never_let_go_relaxes_and_stiffens_and_nothing_else() {
+    let Some(told) = told("tissue_s230515", "tissue_indentation/s230515_P002_laser_2.csv") else { return };
+    let found = named(&told);
+    for effect in ["stress_relaxation", "nonlinear_stiffness"] {
+        assert!(found.contains(&effect), "{effect} is not among {found:?}");
+    }
+    assert!(
+        !found.iter().any(|name| ["force_lag", "force_bias", "plastic_set", "lost_motion"].contains(name)),
+        "{found:?}"
+    );
+    assert!(
+        told.findings.iter().any(|finding| finding.text.contains("force_lag")),
+        "that a slow sensor would show the same"
+    );
+}
+
 #[test]
 fn a_diamond_leaves_a_dent() {
     is_named("nanoindenter", "nanoindentation/fused_silica_cycles_test1.csv", &["plastic_set"]);

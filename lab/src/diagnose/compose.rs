@@ -3,7 +3,7 @@
 use super::answer::{
     Answer, Bar, Evidence, Finding, Goodness, Location, Nominal, Physics, Pictures, Rival, Trace, Value, Verdict,
 };
-use super::fold::{self, HeldOut};
+use super::fold;
 use super::interval::Estimate;
 use super::judge::{Judgement, Named};
 use super::locate::Channel;
@@ -113,6 +113,12 @@ fn findings(parts: &Parts<'_>, stand: &Stand) -> Vec<Finding> {
         );
         findings.push(Finding { grave: false, place: "position".to_owned(), text });
     }
+    let relaxes = parts.judgement.named.iter().any(|named| named.term.name() == "stress_relaxation");
+    if relaxes && stand.scene.releases == 0 && !stand.scene.has_effort {
+        let text = "The tool never leaves the surface and no effort was recorded: a force sensor that follows slowly (force_lag) would \
+                    show what is named stress_relaxation here. Record how the force fades after a release.";
+        findings.push(Finding { grave: false, place: "motion".to_owned(), text: text.to_owned() });
+    }
     findings
 }
 
@@ -161,20 +167,6 @@ fn physics(parts: &Parts<'_>, stand: &Stand, locations: &[Location], main: &Good
     all
 }
 
-/// Share of a channel's held-out energy that is gone.
-fn gone(parts: &Parts<'_>, without: &HeldOut, with: &HeldOut, place: Place) -> f64 {
-    let reach = parts.study.nominal.reach(place);
-    let share = |effort: bool| {
-        let (before, after) =
-            (fold::rms(parts.study, &without.rests, effort), fold::rms(parts.study, &with.rests, effort));
-        if before > 0.0 { 1.0 - (after / before).powi(2) } else { 0.0 }
-    };
-    match (reach.force, reach.effort) {
-        (true, true) => share(false).max(share(true)),
-        (_, effort) => share(effort),
-    }
-}
-
 fn effect(parts: &Parts<'_>, stand: &Stand, named: &Named) -> Physics {
     let card = named.term.effect.card();
     let form = &card.forms[named.term.form];
@@ -191,7 +183,7 @@ fn effect(parts: &Parts<'_>, stand: &Stand, named: &Named) -> Physics {
         statement: format!("{}.", card.statement),
         equation: form.equation.to_owned(),
         evidence: Evidence {
-            held_out_gain: gone(parts, &named.without, &parts.judgement.improved, card.place),
+            held_out_gain: fold::gone(parts.study, &named.without, &parts.judgement.improved, card.place),
             p_value: named.p_value,
         },
         parameters: parameters.collect(),
@@ -231,7 +223,7 @@ fn rivals(parts: &Parts<'_>, stand: &Stand) -> Vec<Rival> {
             let place = rival.term.effect.card().place;
             Rival {
                 physics: std::iter::once(rival.term.name()).chain(others).map(str::to_owned).collect(),
-                held_out_gain: gone(parts, before, &held, place),
+                held_out_gain: fold::gone(parts.study, before, &held, place),
                 separated_by: experiment::separated_by(&rival.instead_of, &rival.term),
             }
         })

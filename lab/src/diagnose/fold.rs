@@ -8,7 +8,7 @@ use super::model::{Channels, Model, Rest};
 use super::product::energy;
 use super::study::Study;
 use super::whiten::Whitener;
-use crate::effects::Scene;
+use crate::effects::{Place, Scene};
 
 /// Stretches a trial is cut into.
 const STRETCHES: f64 = 10.0;
@@ -115,4 +115,19 @@ pub fn rms(study: &Study, rests: &[Rest], effort: bool) -> f64 {
         }
     }
     (sum / count.max(1.0)).sqrt()
+}
+
+/// Share of the energy on unseen data that is gone from `without` to `with`, in the channel in which it is more of those that an
+/// effect at `place` reaches.
+#[must_use]
+pub fn gone(study: &Study, without: &HeldOut, with: &HeldOut, place: Place) -> f64 {
+    let reach = study.nominal.reach(place);
+    let share = |effort: bool| {
+        let (before, after) = (rms(study, &without.rests, effort), rms(study, &with.rests, effort));
+        if before > 0.0 { 1.0 - (after / before).powi(2) } else { 0.0 }
+    };
+    match (reach.force, reach.effort) {
+        (true, true) => share(false).max(share(true)),
+        (_, effort) => share(effort),
+    }
 }

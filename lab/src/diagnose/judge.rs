@@ -83,6 +83,13 @@ const WRONG_VALUES: f64 = 1.05;
 /// Growth of the root mean square on unseen data in either channel that no explanation may bring.
 const WORSE: f64 = 1.05;
 
+/// Share of what is left without it on unseen data, of its power or of its whitened energy above what twins leave, that an effect
+/// beside others has to take where structure is left.
+const SUPPORTED: f64 = 0.25;
+
+/// The same of its power where much is left: it has to halve it.
+const HALF: f64 = 0.5;
+
 /// Energy by which a rival may stand behind, for chance: 12 of a white energy is a probability of 5e-4 for one value.
 const CLOSE: f64 = 12.0;
 
@@ -106,6 +113,9 @@ pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<J
         let Some(better) = better.min_by(|a, b| worth(a).total_cmp(&worth(b))).cloned() else { break };
         say(&format!("{} explains more than {}", better.term.name(), better.instead_of.name()));
         select::exchange(study, search, &better.model, &better.fit.values, say);
+    }
+    if pruned(study, search, say) {
+        rivals = rivals_of(study, search);
     }
     let stand = &search.rounds.last()?.stand;
     let nominal = study.fit(&study.nominal, &search.rounds.first()?.stand.values, &stand.whitener);
@@ -151,6 +161,57 @@ pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<J
     let rivals = if is_named { close(stand, &named, rivals) } else { Vec::new() };
     let left = left || verdict == Verdict::Unknown;
     Some(Judgement { verdict, named, rivals, share, left, nominal, as_given, refitted, improved })
+}
+
+/// Takes off, the least first, effects beside others without which unseen data are left as well or nearly so; whether there were
+/// any.
+///
+/// Where the residual is far from the floor any bend of a curve takes something of it, and each effect that was taken up may
+/// since have lost what it was taken up for.
+fn pruned(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> bool {
+    let mut any = false;
+    while let Some(idle) = search.rounds.last().and_then(|round| idle(study, &round.stand)) {
+        say(&format!("without {}, which takes next to nothing", idle.term.name()));
+        select::exchange(study, search, &idle.model, &idle.values, say);
+        any = true;
+    }
+    any
+}
+
+/// An effect that is not needed.
+struct Idle {
+    term: Term,
+    /// The model without it.
+    model: Model,
+    /// Fitted values of that.
+    values: Vec<f64>,
+}
+
+/// The effect of several that takes the least of unseen data, if that is too little.
+fn idle(study: &Study, stand: &Stand) -> Option<Idle> {
+    let known = study.nominal.terms.len();
+    if stand.model.terms.len() < known + 2 {
+        return None;
+    }
+    let ratio = study.trusted_ratio(stand);
+    let (far, enough) = match ratio {
+        _ if ratio > FAR * FAR => (true, HALF),
+        _ if ratio > BEYOND => (false, SUPPORTED),
+        _ => (false, 0.0),
+    };
+    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
+    let held = |model: &Model, values: &[f64]| fold::held_out(study, &stand.whitener, model, values, &stand.scene);
+    let (with, floor) = (held(&stand.model, &stand.values), select::mean(stand));
+    let taken = (known..stand.model.terms.len()).into_par_iter().map(|at| {
+        let term = stand.model.terms[at];
+        let (model, values) = without(&stand.model, &stand.values, at);
+        let values = fit::fit(&data, &model, &values, &stand.scene).values;
+        let without = held(&model, &values);
+        let gone = fold::gone(study, &without, &with, term.effect.card().place);
+        let white = (without.energy - with.energy) / (without.energy - floor).max(f64::MIN_POSITIVE);
+        (if far { gone } else { gone.max(white) }, Idle { term, model, values })
+    });
+    taken.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gone, _)| *gone < enough).map(|(_, idle)| idle)
 }
 
 /// Whether the given values leave more than the fitted ones, beyond an encoder's start within its step.

@@ -26,6 +26,17 @@ fn visits(track: &Track, surface: f64, bilateral: bool, least: f64) -> usize {
     count
 }
 
+/// Farthest way back out from the deepest place before, over all the way in.
+fn way_back(track: &Track, surface: f64, bilateral: bool) -> f64 {
+    let depth = |position: &f64| if bilateral { *position } else { position.max(surface) };
+    let (mut deepest, mut shallowest) = (f64::NEG_INFINITY, f64::INFINITY);
+    let back = track.position.iter().map(depth).fold(0.0, |most: f64, depth| {
+        (deepest, shallowest) = (deepest.max(depth), shallowest.min(depth));
+        most.max(deepest - depth)
+    });
+    if deepest > shallowest { back / (deepest - shallowest) } else { 0.0 }
+}
+
 /// Moments at which the contact ends.
 fn releases(track: &Track, surface: f64, bilateral: bool) -> usize {
     let inside = |position: f64| !bilateral && position > surface;
@@ -69,6 +80,7 @@ pub fn scene(trials: &[Trial], model: &Model, values: &[f64], sample: f64, is_ro
     let all = mean_square(&|track, at| Some(track.velocity[at]));
     Scene {
         depth: if model.contact.is_some() { depth.max(1e-3 * (travel.1 - travel.0)) } else { 0.0 },
+        way_back: tracks().map(|track| way_back(track, surface, bilateral)).fold(0.0, f64::max),
         speed: if model.contact.is_some() && moving > 0.0 { moving } else { all },
         acceleration: mean_square(&|track, at| Some(track.acceleration[at])),
         force: size(force_range),

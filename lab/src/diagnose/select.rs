@@ -269,12 +269,21 @@ fn acceptable<'a>(study: &Study, round: &'a Round) -> Option<&'a Candidate> {
         let convincing = CONVINCING.map(|share| gain > share * left && candidate.p_any < ALARM * ALARM);
         let model = &candidate.model;
         candidate.p_any < ALARM
+            && is_shown(study, candidate)
             && !fit::is_at_limit(&candidate.term, model.trials(), &candidate.values, &round.stand.scene)
             && candidate.held_out < round.held_out
             && is_practical(round, [force && !convincing[0], effort && !convincing[1]], candidate)
             && gain > WORTHWHILE * above
     };
     round.candidates.iter().find(able)
+}
+
+/// Whether the recordings, as its own fit sees them, show what `candidate` is told by: a surface that was moved until nothing is
+/// free any more says nothing of the sensor's zero.
+fn is_shown(study: &Study, candidate: &Candidate) -> bool {
+    let (effect, form) = (candidate.term.effect, candidate.term.form);
+    let scene = study.scene(&candidate.model, &candidate.values);
+    !effect.starts(form, &scene).is_empty() || effect.tones(form, &scene).is_some()
 }
 
 /// Whether `candidate` is large enough to matter: it takes something where there is more than twins leave, and where that

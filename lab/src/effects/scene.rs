@@ -33,6 +33,8 @@ pub struct Scene {
     pub visits: usize,
     /// How often the tool left the surface, over all trials.
     pub releases: usize,
+    /// Farthest way back out in contact, over all the way in.
+    pub way_back: f64,
     /// Share of the time between the first and the last moment without contact.
     pub free_span: f64,
     /// Stiffness of the rig file.
@@ -62,6 +64,18 @@ impl Scene {
     #[must_use]
     pub fn slowest(&self) -> f64 {
         0.25 * self.pace
+    }
+
+    /// Whether the tool came back far enough for what differs between in and out to show.
+    #[must_use]
+    pub fn comes_back(&self) -> bool {
+        self.way_back > 0.02
+    }
+
+    /// Whether the tool was free for so long that what the sensor shows then is seen behind the filter.
+    #[must_use]
+    pub fn sees_zero(&self) -> bool {
+        self.free_span * self.duration > 10.0 * self.step
     }
 
     /// Whether early and late can be told from shallow and deep: only where the same depth was visited again.

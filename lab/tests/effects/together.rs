@@ -23,6 +23,7 @@ pub fn scene() -> Scene {
         inertia: 0.8,
         visits: 16,
         releases: 2,
+        way_back: 1.0,
         free_span: 0.4,
         given_inertia: 0.8,
         given_stiffness: 300.0,

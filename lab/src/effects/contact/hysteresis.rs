@@ -58,6 +58,9 @@ impl Effect for Hysteresis {
     }
 
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        if !scene.comes_back() {
+            return Vec::new();
+        }
         let size = 0.05 * scene.stiffness * scene.depth;
         let travels = geometric(0.01 * scene.depth, 1.0 * scene.depth, 7);
         let third = [None, Some(1.0), Some(3.0)][form];

@@ -29,6 +29,9 @@ impl Effect for LostMotion {
     }
 
     fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+        if !scene.comes_back() {
+            return Vec::new();
+        }
         geometric(0.003 * scene.depth, 0.8 * scene.depth, 8).iter().map(|play| Start::at(&[*play])).collect()
     }
 

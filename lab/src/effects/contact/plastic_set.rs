@@ -50,6 +50,9 @@ impl Effect for PlasticSet {
     }
 
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        if !scene.comes_back() {
+            return Vec::new();
+        }
         let ratios = [0.02, 0.1, 0.3, 0.6, 0.85];
         if form == 0 {
             return ratios.iter().map(|ratio| Start::at(&[*ratio])).collect();

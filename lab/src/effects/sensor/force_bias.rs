@@ -35,8 +35,11 @@ impl Effect for ForceBias {
 
     fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
         // Without a free moment it is a surface that lies elsewhere.
-        let free = scene.is_bilateral || scene.free_span > 0.0;
-        if free { vec![Start::sized(&[0.01 * scene.force], &[0])] } else { Vec::new() }
+        if scene.is_bilateral || scene.sees_zero() {
+            vec![Start::sized(&[0.01 * scene.force], &[0])]
+        } else {
+            Vec::new()
+        }
     }
 
     fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {

@@ -28,6 +28,11 @@ impl Effect for ForceLag {
     }
 
     fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+        // F + T dF/dt = K x + B v is a spring of K beside a Maxwell branch of B / T - K: only a force that fades after the tool has
+        // left, or the drive, tells a slow sensor from a body that relaxes, and a body is what is seldom known.
+        if scene.releases == 0 && !scene.has_effort {
+            return Vec::new();
+        }
         geometric(0.3 * scene.sample, 30.0 * scene.step, 8).iter().map(|time| Start::at(&[*time])).collect()
     }
 
