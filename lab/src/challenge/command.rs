@@ -38,11 +38,14 @@ pub struct ChallengeArgs {
     /// Have plain BIC, PySINDy and SysIdentPy look at the same files
     #[arg(long)]
     pub rivals: bool,
+    /// Begin no case after so many minutes of diagnosing: those not reached are left out, and said so
+    #[arg(long, value_name = "N")]
+    pub minutes: Option<u64>,
     /// Keep recordings, sealed answers and diagnoses here
     #[arg(long, value_name = "DIR")]
     pub keep: Option<PathBuf>,
     /// Run nothing: redraw page and tables of a score that was written by --json
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["cases", "seed", "source", "recordings", "rivals", "keep"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["cases", "seed", "source", "recordings", "rivals", "minutes", "keep"])]
     pub from: Option<PathBuf>,
     /// Put the score into docs/challenge.json of this project, its page beside it, its table into the README, that of
     /// the real recordings into docs/diagnosis.md

@@ -58,6 +58,9 @@ pub struct Row {
     pub wrong: Vec<String>,
     /// What came of it.
     pub judgement: Judgement,
+    /// Whether these data cannot tell dry friction from damping, and the answer says so.
+    #[serde(default)]
+    pub leaves_friction_open: bool,
     /// "N" or "N m".
     pub unit: String,
     /// What the sensors leave, by the diagnosis.
@@ -104,6 +107,7 @@ impl Row {
             missing: own(set.has),
             wrong: Vec::new(),
             judgement: Judgement::Missed,
+            leaves_friction_open: false,
             unit: entry.rig.coordinate.force_unit().to_owned(),
             floor: None,
             stretches: Residual::default(),
@@ -122,6 +126,7 @@ impl Row {
                 row.missing.retain(|name| !row.named.contains(name));
                 row.wrong = own(&judge::wrong(set, &told));
                 row.judgement = judge::judge(set, &told);
+                row.leaves_friction_open = set.friction_is_open && judge::leaves_friction_open(&told);
                 row.floor = told.fit.noise_floor;
                 row.stretches = Residual { before: told.fit.refitted, after: told.fit.improved };
                 row.verdict = Some(told.verdict);
@@ -147,6 +152,9 @@ impl Row {
         };
         if self.judgement == Judgement::Named && !self.missing.is_empty() {
             words += &format!("; not {}", spaced(&self.missing));
+        }
+        if self.leaves_friction_open && self.judgement != Judgement::Undecidable {
+            words += "; damping not told from dry friction, and said so";
         }
         words
     }
