@@ -140,7 +140,7 @@ impl Effect for Backlash {
         }
         let (way, pulse) = (scene.travel.1 - scene.travel.0, FLANKS * scene.link_rate());
         let start = |share: f64| Start::sized(&[0.01 * way, share, share * scene.inertia * pulse * pulse], &[0]);
-        linear(0.1, 0.8, 8).into_iter().map(start).collect()
+        linear(0.1, 0.79, 8).into_iter().map(start).collect()
     }
 
     /// The motor rests against the side that bears, and what the tool's side bears is seen: where that changes its sign, the motor
