@@ -119,6 +119,14 @@ fn no_case_is_a_fault_of_the_command_line() {
 }
 
 #[test]
+fn the_page_of_the_diagnosis_shows_the_run_of_its_aims() {
+    let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let run: Challenge = serde_json::from_value(json(&project.join("docs/aims.json"))).unwrap();
+    let page = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
+    assert!(page.contains(summary::table(&run).trim()), "the table is of another run");
+}
+
+#[test]
 fn the_readme_shows_the_published_score() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let published = json(&project.join("docs/challenge.json"));
