@@ -68,14 +68,10 @@ fn a_soft_sample_relaxes_and_stiffens() {
 #[test]
 fn a_soft_sample_that_is_never_let_go_relaxes_and_stiffens_and_nothing_else() {
     let Some(told) = told("tissue_s230515", "tissue_indentation/s230515_P002_laser_2.csv") else { return };
-    let found = named(&told);
-    for effect in ["stress_relaxation", "nonlinear_stiffness"] {
-        assert!(found.contains(&effect), "{effect} is not among {found:?}");
-    }
-    assert!(
-        !found.iter().any(|name| ["force_lag", "force_bias", "plastic_set", "lost_motion"].contains(name)),
-        "{found:?}"
-    );
+    let mut found = named(&told);
+    found.retain(|name| *name != "unknown");
+    found.sort_unstable();
+    assert_eq!(found, ["nonlinear_stiffness", "stress_relaxation"]);
     assert!(
         told.findings.iter().any(|finding| finding.text.contains("force_lag")),
         "that a slow sensor would show the same"

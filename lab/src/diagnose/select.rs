@@ -269,11 +269,11 @@ fn acceptable<'a>(study: &Study, round: &'a Round) -> Option<&'a Candidate> {
         let convincing = CONVINCING.map(|share| gain > share * left && candidate.p_any < ALARM * ALARM);
         let model = &candidate.model;
         candidate.p_any < ALARM
-            && is_shown(study, candidate)
             && !fit::is_at_limit(&candidate.term, model.trials(), &candidate.values, &round.stand.scene)
             && candidate.held_out < round.held_out
             && is_practical(round, [force && !convincing[0], effort && !convincing[1]], candidate)
             && gain > WORTHWHILE * above
+            && is_shown(study, candidate)
     };
     round.candidates.iter().find(able)
 }

@@ -2,7 +2,7 @@
 
 use palpate_cases::reference::Kind;
 use palpate_cases::sensors::Grade;
-use palpate_cases::{What, Wish, draw};
+use palpate_cases::{Truth, What, Wish, draw};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -99,43 +99,37 @@ fn a_drive_at_the_end_of_its_effort() {
     finds(&case, "effort_saturation", &[("limit", 3.0)]);
 }
 
+/// A case of a simulation that shares no code with the effects, by seed and number: an effect of so many floors, and what else is
+/// wished for.
+fn concealed((seed, number): (u64, u64), (effect, strength): (&str, f64), wish: Wish) -> (Case, Truth) {
+    let wish = Wish { what: Some(What::single(effect, Some(strength))), ..wish };
+    let drawn = draw(seed, number, &wish).unwrap();
+    let case = Case { folder: TempDir::new().unwrap() };
+    drawn.write(case.folder.path()).unwrap();
+    (case, drawn.truth)
+}
+
 /// Two masses followed at 20 kHz, three floors above what the sensors leave; the diagnosis looks at derivatives and follows
 /// none.
 #[test]
 fn a_cable_that_gives() {
-    let wish = Wish {
-        what: Some(What::single("transmission_compliance", Some(3.0))),
-        sensors: Some(Grade::Fine),
-        reference: Some(Kind::Rich),
-        ..Wish::default()
-    };
-    let drawn = draw(77, 0, &wish).unwrap();
-    let case = Case { folder: TempDir::new().unwrap() };
-    drawn.write(case.folder.path()).unwrap();
-    let truth =
-        |name: &str| drawn.truth.effects[0].parameters.iter().find(|parameter| parameter.name == name).unwrap().value;
-    let expected =
-        [("link_stiffness", truth("stiffness")), ("motor_share", 1.0 - truth("tool_mass") / drawn.truth.nominal.mass)];
+    let wish = Wish { sensors: Some(Grade::Fine), reference: Some(Kind::Rich), ..Wish::default() };
+    let (case, truth) = concealed((77, 0), ("transmission_compliance", 3.0), wish);
+    let own = |name: &str| truth.effects[0].parameters.iter().find(|parameter| parameter.name == name).unwrap().value;
+    let expected = [("link_stiffness", own("stiffness")), ("motor_share", 1.0 - own("tool_mass") / truth.nominal.mass)];
     found(&case.diagnose(&[]), "transmission_compliance", &expected);
 }
 
 /// A tone of 50 Hz where the filter of a coarse encoder's contact would end at 20.
 #[test]
 fn a_hum_above_the_band() {
-    let wish = Wish {
-        what: Some(What::single("mains_hum", Some(1.0))),
-        sensors: Some(Grade::Coarse),
-        reference: None,
-        ..Wish::default()
-    };
-    let drawn = draw(91, 1, &wish).unwrap();
-    let case = Case { folder: TempDir::new().unwrap() };
-    drawn.write(case.folder.path()).unwrap();
+    let wish = Wish { sensors: Some(Grade::Coarse), ..Wish::default() };
+    let (case, truth) = concealed((91, 1), ("mains_hum", 1.0), wish);
     let answer = case.diagnose(&[]);
     names(&answer, "mains_hum");
     let parameters = &answer["physics"][0]["parameters"];
     let [sine, cosine, frequency] = [0, 1, 2].map(|at| parameters[at]["value"].as_f64().unwrap());
-    let truth = &drawn.truth.effects[0].parameters;
+    let truth = &truth.effects[0].parameters;
     println!("{} of {} at {frequency} of {} Hz", sine.hypot(cosine), truth[0].value, truth[1].value);
     // A third passes the filter: what is lost there has to be given back, in the recording and in its twins alike.
     assert!((sine.hypot(cosine) / truth[0].value - 1.0).abs() < 0.1);
@@ -146,21 +140,20 @@ fn a_hum_above_the_band() {
 /// Two masses with teeth between them, followed at 20 kHz: the motor is never seen, and strikes within the filter's width.
 #[test]
 fn a_gear_with_play() {
-    let wish = Wish { what: Some(What::single("backlash", Some(1.2))), sensors: Some(Grade::Fine), ..Wish::default() };
-    let drawn = draw(78, 5, &wish).unwrap();
-    let case = Case { folder: TempDir::new().unwrap() };
-    drawn.write(case.folder.path()).unwrap();
+    let wish = Wish { sensors: Some(Grade::Fine), ..Wish::default() };
+    let (case, truth) = concealed((78, 5), ("backlash", 1.2), wish);
     let answer = case.diagnose(&[]);
     names(&answer, "backlash");
     let parameters = &answer["physics"][0]["parameters"];
     let [gap, share] = [0, 1].map(|at| parameters[at]["value"].as_f64().unwrap());
-    let truth = &drawn.truth.effects[0].parameters;
-    let motor = 1.0 - truth[1].value / drawn.truth.nominal.mass;
+    let mass = truth.nominal.mass;
+    let truth = &truth.effects[0].parameters;
+    let motor = 1.0 - truth[1].value / mass;
     println!("gap {gap:.3e} of {:.3e}, motor's share {share:.3} of {motor:.3}", truth[0].value);
-    // What is seen is the motor's momentum: gap and mass lie on each other, and the way through the gap is taken for a cubic, which
-    // costs up to two fifths.
+    // What is seen is the motor's momentum: gap and mass lie on each other, and the way through the gap is taken for a
+    // cubic: two fifths too much, here.
     assert!((gap * share / (truth[0].value * motor) - 1.0).abs() < 0.45, "{gap} {share}");
-    // The drive lay at 2.3 floors; a quarter of that is the law's.
+    // The drive lay at 2.3 floors.
     assert!(fit(&answer, "improved") < 1.3 * fit(&answer, "noise_floor"), "{}", answer["fit"]);
 }
 
