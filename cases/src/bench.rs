@@ -106,7 +106,7 @@ impl Bench {
         search::find(asked, shape.sizes(), |size| {
             let tracks = world.run(&self.setup, &self.references, &[(shape, size)])?;
             let sane = tracks.iter().all(|track| track.is_sane(scene.travel));
-            let ratio = || self.ratio(strength::residual(&tracks, &self.setup.nominal), effort);
+            let ratio = || self.ratio(strength::residual(&tracks, &self.setup.nominal, &self.sensors), effort);
             Ok((if sane { ratio() } else { f64::INFINITY }, tracks))
         })
     }
@@ -121,7 +121,7 @@ impl Bench {
         plan: &Plan,
         tracks: &[Track],
     ) -> TrueEffect {
-        let residual = strength::residual(tracks, &self.setup.nominal);
+        let residual = strength::residual(tracks, &self.setup.nominal, &self.sensors);
         TrueEffect {
             name: known.name,
             acts_in: known.acts,

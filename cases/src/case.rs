@@ -74,7 +74,7 @@ pub fn draw_in<W: World>(world: &mut W, seed: u64, index: u64, wish: &Wish) -> R
         index,
         kind: plan.kind,
         effects,
-        strength: bench.ratio(strength::residual(&tracks, &bench.setup.nominal), plan.effort),
+        strength: bench.ratio(strength::residual(&tracks, &bench.setup.nominal, &bench.sensors), plan.effort),
         floor: scale.apply(bench.sensors.floor(), Unit::Force),
         floor_unit: Unit::Force.name(scale.rotary),
         channels: channels(&plan),

@@ -1,6 +1,7 @@
 //! How much of an effect the nominal physics cannot take up by values of its own.
 
 use crate::nominal::Nominal;
+use crate::sensors::Sensors;
 use crate::simulate::{PERIOD, Track};
 
 /// RMS residuals of the best nominal fit to the true, noise-free motion, N.
@@ -8,14 +9,14 @@ use crate::simulate::{PERIOD, Track};
 pub struct Residual {
     /// Of the force, fitted by K, B and surface.
     pub force: f64,
-    /// Of the effort less the measured force, fitted by m and b, in means over 16 ms.
+    /// Of the effort less the measured force, fitted by m and b, in means over [`seen`].
     pub effort: f64,
 }
 
-/// Fits all `tracks` at once.
+/// Fits all `tracks` at once, as `sensors` show them.
 #[must_use]
-pub fn residual(tracks: &[Track], nominal: &Nominal) -> Residual {
-    Residual { force: contact(tracks, nominal), effort: drive(tracks) }
+pub fn residual(tracks: &[Track], nominal: &Nominal, sensors: &Sensors) -> Residual {
+    Residual { force: contact(tracks, nominal), effort: drive(tracks, seen(nominal.mass, sensors)) }
 }
 
 /// Sums of products, for a least-squares fit of N values.
@@ -62,17 +63,35 @@ impl<const N: usize> Normal<N> {
 }
 
 /// Rows over which the drive's balance is averaged: what shakes quicker no encoder shows.
-const SEEN: usize = 16;
+///
+/// A parabola through N readings over T = N P, each off by `sigma = step / sqrt(12)`, has an acceleration that is off by
+/// `sqrt(720 / N) sigma / T^2`; at T that is, times the mass, as much as the force sensor's floor.
+fn seen(mass: f64, sensors: &Sensors) -> usize {
+    let sigma = sensors.position_step / 12.0_f64.sqrt();
+    let seconds = (mass * sigma * (720.0 * PERIOD).sqrt() / sensors.floor()).powf(0.4);
+    (seconds / PERIOD).ceil() as usize
+}
 
-fn drive(tracks: &[Track]) -> f64 {
+/// How much each of `rows` counts in a mean. The acceleration of a parabola through positions is the mean of the true one
+/// with the weight `(1 - u^2)^2`, u from -1 to 1; effort and force are averaged alike.
+fn weights(rows: usize) -> Vec<f64> {
+    let at = |row: usize| (1.0 - ((2 * row + 1) as f64 / rows as f64 - 1.0).powi(2)).powi(2);
+    let sum: f64 = (0..rows).map(at).sum();
+    (0..rows).map(|row| at(row) / sum).collect()
+}
+
+fn drive(tracks: &[Track], seen: usize) -> f64 {
+    let weights = weights(seen);
+    let held = |values: &[f64]| values.iter().zip(&weights).map(|(value, weight)| weight * value).sum::<f64>();
+    // From one row to the next, as the effort holds until then.
+    let rate = |values: &[f64]| {
+        values.windows(2).zip(&weights).map(|(pair, weight)| weight * (pair[1] - pair[0]) / PERIOD).sum::<f64>()
+    };
     let rows = || {
         tracks.iter().flat_map(|track| {
-            (0..track.effort.len().saturating_sub(SEEN)).step_by(SEEN / 4).map(|row| {
-                let (end, seconds) = (row + SEEN, SEEN as f64 * PERIOD);
-                let mean = |values: &[f64]| values[row..end].iter().sum::<f64>() / SEEN as f64;
-                let a = (track.velocity[end] - track.velocity[row]) / seconds;
-                let v = (track.position[end] - track.position[row]) / seconds;
-                ([a, v], mean(&track.effort) - mean(&track.force_mean))
+            (0..track.effort.len().saturating_sub(seen)).step_by((seen / 4).max(1)).map(|row| {
+                let regressor = [rate(&track.velocity[row..]), rate(&track.position[row..])];
+                (regressor, held(&track.effort[row..]) - held(&track.force_mean[row..]))
             })
         })
     };

@@ -27,7 +27,7 @@ pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 pub use scene::{Abscissa, Scene, Start, Tones, Weight, geometric, linear};
 pub use side::Side;
-pub use touch::{Touch, gate, ramp};
+pub use touch::{Touch, gate, ramp, rounded};
 
 /// What an effect with a hidden state carries from one sample to the next; all zero at the start of a trial.
 pub type Memory = [f64; 7];

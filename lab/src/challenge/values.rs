@@ -6,13 +6,15 @@ use palpate_cases::Truth;
 use palpate_cases::truth::TrueEffect;
 
 /// Effect, parameter in the truth, parameter in the answer: the same law and the same unit.
-const SAME: [[&str; 3]; 31] = [
+const SAME: [[&str; 3]; 35] = [
     ["nonlinear_stiffness", "exponent", "exponent"],
     ["nonlinear_stiffness", "stiffening", "stiffening"],
     ["nonlinear_stiffness", "hardening", "cubic"],
     ["layered_stiffness", "layer_depth", "layer_depth"],
     ["hunt_crossley_damping", "alpha", "alpha"],
+    ["hunt_crossley_damping", "exponent", "exponent"],
     ["quadratic_damping", "coefficient", "quadratic"],
+    ["quadratic_damping", "exponent", "exponent"],
     ["stress_relaxation", "branch_stiffness", "branch_stiffness"],
     ["stress_relaxation", "time_constant", "relaxation_time"],
     ["hysteresis", "amplitude", "loop_force"],
@@ -35,6 +37,8 @@ const SAME: [[&str; 3]; 31] = [
     ["transmission_compliance", "stiffness", "link_stiffness"],
     ["force_bias", "bias", "bias"],
     ["force_drift", "rate", "rate"],
+    ["force_drift", "drift", "settled"],
+    ["force_drift", "time_constant", "time_constant"],
     ["tool_inertia", "mass", "beyond_mass"],
     ["channel_delay", "delay", "delay"],
     ["mains_hum", "frequency", "frequency"],
@@ -56,7 +60,7 @@ pub fn compare(truth: &Truth, physics: &[Physics]) -> Vec<Compared> {
     let same = SAME.iter().map(|[name, theirs, ours]| (*name, *theirs, *ours));
     let alike = ALIKE.iter().map(|[name, both]| (*name, *both, *both));
     same.chain(alike)
-        .filter(|(name, ..)| *name == effect.name && is_same_law(effect))
+        .filter(|(name, theirs, _)| *name == effect.name && is_same_law(effect, theirs))
         .filter_map(|(name, theirs, ours)| {
             let truth = effect.parameters.iter().find(|value| value.name == theirs)?;
             let value = found.parameters.iter().find(|value| value.name == ours)?;
@@ -70,10 +74,12 @@ pub fn compare(truth: &Truth, physics: &[Physics]) -> Vec<Compared> {
         .collect()
 }
 
-/// A damping in another power of depth or speed, two branches seen as one and a weight by angle have other parameters.
-fn is_same_law(effect: &TrueEffect) -> bool {
+/// A damping in another power of depth or speed, two branches seen as one and a weight by angle have other parameters;
+/// the power itself is the same everywhere.
+fn is_same_law(effect: &TrueEffect, parameter: &str) -> bool {
     let value = |name: &str| effect.parameters.iter().find(|value| value.name == name).map(|value| value.value);
     match effect.name {
+        _ if parameter == "exponent" => true,
         "hunt_crossley_damping" => value("exponent").is_none_or(|exponent| (exponent - 1.0).abs() < 1e-6),
         "quadratic_damping" => value("exponent").is_none_or(|exponent| (exponent - 2.0).abs() < 1e-6),
         "stress_relaxation" => value("second_time_constant").is_none(),

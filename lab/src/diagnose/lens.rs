@@ -27,6 +27,7 @@ pub struct Lens {
     bend: Vec<f64>,
     jerk: Vec<f64>,
     snap: Vec<f64>,
+    crackle: Vec<f64>,
     held: Vec<f64>,
     held_slope: Vec<f64>,
     passes: Option<Box<Passes>>,
@@ -189,6 +190,7 @@ impl Lens {
             bend: plain.bend,
             jerk: plain.jerk,
             snap: plain.snap,
+            crackle: plain.crackle,
             held: held.level,
             held_slope: held.slope,
             passes: None,
@@ -255,6 +257,12 @@ impl Lens {
         self.through(&self.snap, values)
     }
 
+    /// Their fifth derivative.
+    #[must_use]
+    pub fn crackle(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.crackle, values)
+    }
+
     /// The smoothed course of values that are held from their row to the next.
     #[must_use]
     pub fn held(&self, values: &[f64]) -> Vec<f64> {
@@ -298,20 +306,26 @@ fn noises(raws: &[Raw]) -> (f64, f64) {
     raws.iter().map(noise).fold((0.0f64, 0.0f64), |a, b| (a.0.max(b.0), a.1.max(b.1)))
 }
 
-/// Taps of the third and the fourth derivative: the bell times the polynomials that are orthogonal, under it, to all lower ones.
+/// Taps of the third to the fifth derivative: the bell times the polynomials that are orthogonal, under it, to all lower ones.
 /// Hermite's are that only for a bell without an end.
-fn higher(bell: &[f64], places: &[f64], period: f64) -> [Vec<f64>; 2] {
+fn higher(bell: &[f64], places: &[f64], period: f64) -> [Vec<f64>; 3] {
     let moment = |power: i32| bell.iter().zip(places).map(|(tap, x)| tap * x.powi(power)).sum::<f64>();
-    let [none, second, fourth, sixth] = [0, 2, 4, 6].map(moment);
+    let [none, second, fourth, sixth, eighth] = [0, 2, 4, 6, 8].map(moment);
     let square = (sixth * none - fourth * second) / (fourth * none - second * second);
     let level = (fourth - square * second) / none;
+    let cube = (fourth * sixth - second * eighth) / (second * sixth - fourth * fourth);
+    let line = -(sixth + cube * fourth) / second;
     let taps = |law: &dyn Fn(f64) -> f64, order: i32| {
         let plain: Vec<f64> = bell.iter().zip(places).map(|(tap, x)| tap * law(*x)).collect();
         let factorial = f64::from((1..=order).product::<i32>());
         let size = plain.iter().zip(places).map(|(tap, x)| tap * x.powi(order)).sum::<f64>() * period.powi(order);
         plain.iter().map(|tap| tap * factorial / size).collect()
     };
-    [taps(&|x| x.powi(3) - fourth / second * x, 3), taps(&|x| x.powi(4) - square * x * x - level, 4)]
+    [
+        taps(&|x| x.powi(3) - fourth / second * x, 3),
+        taps(&|x| x.powi(4) - square * x * x - level, 4),
+        taps(&|x| x.powi(5) + cube * x.powi(3) + line * x, 5),
+    ]
 }
 
 struct Kernels {
@@ -320,12 +334,13 @@ struct Kernels {
     bend: Vec<f64>,
     jerk: Vec<f64>,
     snap: Vec<f64>,
+    crackle: Vec<f64>,
 }
 
 impl Kernels {
     /// Taps for rows -reach..=reach, each of which lies `shift` rows later than its number says. Exact for polynomials,
-    /// however coarse the rows: level of 1 and x, slope of x, bend of x^2 come out as they should, jerk and snap of all up to
-    /// x^4 where nothing is shifted.
+    /// however coarse the rows: level of 1 and x, slope of x, bend of x^2 come out as they should, what is higher of all up
+    /// to x^5 where nothing is shifted.
     fn new(width: f64, reach: usize, shift: f64, period: f64) -> Self {
         let places: Vec<f64> = (0..=2 * reach).map(|tap| tap as f64 - reach as f64 + shift).collect();
         let bell: Vec<f64> = places.iter().map(|x| (-0.5 * (x / width).powi(2)).exp()).collect();
@@ -343,7 +358,7 @@ impl Kernels {
         let bend = even.iter().map(|tap| tap / curve).collect();
         // A bell that lies between the rows has its mean a little beside zero: tilted, it has it there.
         let level = level.iter().zip(&places).map(|(tap, x)| tap * (1.0 - mean * (x - mean) / spread)).collect();
-        let [jerk, snap] = higher(&bell, &places, period);
-        Self { level, slope, bend, jerk, snap }
+        let [jerk, snap, crackle] = higher(&bell, &places, period);
+        Self { level, slope, bend, jerk, snap, crackle }
     }
 }

@@ -22,6 +22,8 @@ pub struct Track {
     pub jerk: Vec<f64>,
     /// Rate of the jerk.
     pub snap: Vec<f64>,
+    /// Rate of the snap.
+    pub crackle: Vec<f64>,
     /// Whether the tool stands still as far as can be seen, 0 or 1.
     pub still: Vec<f64>,
     /// What of the velocity is noise.
@@ -38,6 +40,8 @@ pub struct Track {
     pub force_rate: Option<Vec<f64>>,
     /// Rate of that.
     pub force_bend: Option<Vec<f64>>,
+    /// And of that.
+    pub force_jerk: Option<Vec<f64>>,
     /// Effort, held from its row to the next.
     pub effort: Option<Vec<f64>>,
     /// Rate of the effort.
@@ -122,6 +126,7 @@ impl Track {
             acceleration,
             jerk: lens.jerk(&raw.position),
             snap: lens.snap(&raw.position),
+            crackle: lens.crackle(&raw.position),
             speed_noise,
             shake_noise,
             force_noise: raw.figures.force.map_or(0.0, |force| force.noise * level_noise),
@@ -129,6 +134,7 @@ impl Track {
             force: raw.force.as_ref().map(|force| lens.level(force)),
             force_rate: raw.force.as_ref().map(|force| lens.slope(force)),
             force_bend: raw.force.as_ref().map(|force| lens.bend(force)),
+            force_jerk: raw.force.as_ref().map(|force| lens.jerk(force)),
             effort: raw.effort.as_ref().map(|effort| lens.held(effort)),
             effort_rate: raw.effort.as_ref().map(|effort| lens.held_slope(effort)),
             command: None,

@@ -22,6 +22,8 @@ pub struct Push {
     pub jerk: f64,
     /// Rate of the jerk; zero in a simulation.
     pub snap: f64,
+    /// Rate of the snap; zero in a simulation.
+    pub crackle: f64,
     /// Width of the smoothing filter, s; zero in a simulation.
     pub blur: f64,
     /// What of the velocity is noise, m/s.
@@ -30,8 +32,12 @@ pub struct Push {
     pub still: f64,
     /// Contact force on the tool, positive when the tool pushes.
     pub force: f64,
-    /// Second derivative of the contact force; zero in a simulation.
+    /// Rate of the contact force; zero in a simulation.
+    pub force_rate: f64,
+    /// Its second derivative; zero in a simulation.
     pub force_bend: f64,
+    /// Its third; zero in a simulation.
+    pub force_jerk: f64,
     /// What reaches the tool of the commanded effort.
     pub effort: f64,
     /// Rate of the effort as it is seen through the filter; not used in a simulation, where an effort is held.

@@ -143,6 +143,8 @@ pub struct Tones {
     pub frequencies: Vec<(f64, f64, usize)>,
     /// Size of each part of the wave.
     pub size: f64,
+    /// Waves of one, two... times the frequency that it is made of.
+    pub harmonics: usize,
     /// Whether the last parameter is the period and not the frequency.
     pub by_period: bool,
 }
@@ -152,7 +154,10 @@ impl Tones {
     #[must_use]
     pub fn start(&self, frequency: f64) -> Start {
         let last = if self.by_period { frequency.recip() } else { frequency };
-        Start::sized(&[self.size, self.size, last], &[0, 1])
+        let parts = 2 * self.harmonics;
+        let mut values = vec![self.size; parts];
+        values.push(last);
+        Start { values, sizes: (0..parts).collect() }
     }
 }
 

@@ -83,6 +83,12 @@ pub fn ramp(value: f64, width: f64) -> f64 {
     value * below(z) + width * (-0.5 * z * z).exp() / (std::f64::consts::TAU).sqrt()
 }
 
+/// `width ln(1 + exp(value / width))`: max(0, value) with its corner rounded over `width`.
+#[must_use]
+pub fn rounded(value: f64, width: f64) -> f64 {
+    value.max(0.0) + width * (-value.abs() / width).exp().ln_1p()
+}
+
 /// The probability that value + width n is above zero.
 #[must_use]
 pub fn gate(value: f64, width: f64) -> f64 {

@@ -105,6 +105,8 @@ impl<'a> Bench<'a> {
         let still = |(v, a): (&f64, &f64)| {
             f64::from(v.abs() <= 3.0 * noise * slope_noise && a.abs() <= 3.0 * noise * bend_noise)
         };
+        let jerk = slope(&acceleration, lens.step());
+        let snap = slope(&jerk, lens.step());
         Track {
             step: lens.step(),
             blur: lens.blur,
@@ -114,12 +116,14 @@ impl<'a> Bench<'a> {
             force_noise: level_noise * force_noise.fold(0.0, f64::max),
             position,
             velocity,
-            jerk: slope(&acceleration, lens.step()),
-            snap: slope(&slope(&acceleration, lens.step()), lens.step()),
+            crackle: slope(&snap, lens.step()),
+            jerk,
+            snap,
             acceleration,
             force: None,
             force_rate: None,
             force_bend: None,
+            force_jerk: None,
             effort: None,
             effort_rate: None,
             command: None,
@@ -155,7 +159,9 @@ impl<'a> Bench<'a> {
         let borne = model.contact_force(values, 0, track, bilateral);
         let force = model.reading(values, 0, track, &borne);
         let rate = slope(&force, track.step);
-        track.force_bend = Some(slope(&rate, track.step));
+        let bend = slope(&rate, track.step);
+        track.force_jerk = Some(slope(&bend, track.step));
+        track.force_bend = Some(bend);
         track.force_rate = Some(rate);
         track.force = Some(force);
     }

@@ -12,17 +12,34 @@ static CARD: Card = Card {
     stage: Stage::Law,
     most: 1,
     statement: "The damping is not constant: it grows with depth, from nothing at the surface",
-    forms: &[Form {
-        name: "linear_in_depth",
-        equation: "F = K x + B v + alpha x v",
-        parameters: &[Parameter::new(
-            "alpha",
-            Word::new("N s/m^2", "N m s/rad^2"),
-            "growth of the damping with depth",
-            0.0,
-            f64::INFINITY,
-        )],
-    }],
+    forms: &[
+        Form {
+            name: "linear_in_depth",
+            equation: "F = K x + B v + alpha x v",
+            parameters: &[Parameter::new(
+                "alpha",
+                Word::new("N s/m^2", "N m s/rad^2"),
+                "growth of the damping with depth",
+                0.0,
+                f64::INFINITY,
+            )],
+        },
+        Form {
+            name: "power_of_depth",
+            equation: "F = K x + B v + damping_there (x / reference_depth)^exponent v",
+            parameters: &[
+                Parameter::new(
+                    "damping_there",
+                    Word::new("N s/m", "N m s/rad"),
+                    "what is added at the reference depth",
+                    0.0,
+                    f64::INFINITY,
+                ),
+                Parameter::new("exponent", Word::same("1"), "1.5 goes with a sphere's spring", 0.25, 4.0),
+                Parameter::fixed("reference_depth", Word::new("m", "rad"), "depth at which it is stated"),
+            ],
+        },
+    ],
     excited_by: "motion at two depths, and touching at speed",
     resembles: &["quadratic_damping", "environment_mass", "hysteresis"],
     source: "K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440",
@@ -33,11 +50,24 @@ impl Effect for HuntCrossleyDamping {
         &CARD
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
-        vec![Start::sized(&[0.1 * scene.stiffness / scene.speed.max(f64::MIN_POSITIVE)], &[0])]
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        let growth = 0.1 * scene.stiffness / scene.speed.max(f64::MIN_POSITIVE);
+        if form == 0 {
+            return vec![Start::sized(&[growth], &[0])];
+        }
+        let there = growth * scene.depth;
+        [0.5, 1.5, 2.0].iter().map(|exponent| Start::sized(&[there, *exponent, scene.depth], &[0])).collect()
     }
 
-    fn touch(&self, _form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
-        touch.extra += values[0] * touch.depth.abs() * touch.rate;
+    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+        let depth = touch.depth.abs();
+        touch.extra += touch.rate
+            * if form == 0 {
+                values[0] * depth
+            } else if values[2] > 0.0 && depth > 0.0 {
+                values[0] * (depth / values[2]).powf(values[1])
+            } else {
+                0.0
+            };
     }
 }

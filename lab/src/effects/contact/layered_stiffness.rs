@@ -1,10 +1,21 @@
 //! A second layer under the first.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch, linear, ramp};
+use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch, linear, ramp, rounded};
 use crate::rig::Word;
 
 /// See [`CARD`].
 pub struct LayeredStiffness;
+
+const ADDED_STIFFNESS: Parameter = Parameter::new(
+    "added_stiffness",
+    Word::new("N/m", "N m/rad"),
+    "what the second layer adds; below zero where it is softer",
+    f64::NEG_INFINITY,
+    f64::INFINITY,
+);
+
+const LAYER_DEPTH: Parameter =
+    Parameter::new("layer_depth", Word::new("m", "rad"), "depth of the boundary", 0.0, f64::INFINITY);
 
 static CARD: Card = Card {
     name: "layered_stiffness",
@@ -12,20 +23,28 @@ static CARD: Card = Card {
     stage: Stage::Law,
     most: 1,
     statement: "From a certain depth on, the tool presses on something else",
-    forms: &[Form {
-        name: "two_layers",
-        equation: "spring = K x + added_stiffness max(0, x - layer_depth)",
-        parameters: &[
-            Parameter::new(
-                "added_stiffness",
-                Word::new("N/m", "N m/rad"),
-                "what the second layer adds; below zero where it is softer",
-                f64::NEG_INFINITY,
-                f64::INFINITY,
-            ),
-            Parameter::new("layer_depth", Word::new("m", "rad"), "depth of the boundary", 0.0, f64::INFINITY),
-        ],
-    }],
+    forms: &[
+        Form {
+            name: "two_layers",
+            equation: "spring = K x + added_stiffness max(0, x - layer_depth)",
+            parameters: &[ADDED_STIFFNESS, LAYER_DEPTH],
+        },
+        Form {
+            name: "gradual",
+            equation: "spring = K x + added_stiffness (s(x) - s(0)), s(x) = transition ln(1 + exp((x - layer_depth) / transition))",
+            parameters: &[
+                ADDED_STIFFNESS,
+                LAYER_DEPTH,
+                Parameter::new(
+                    "transition",
+                    Word::new("m", "rad"),
+                    "depth over which one layer gives way to the other",
+                    0.0,
+                    f64::INFINITY,
+                ),
+            ],
+        },
+    ],
     excited_by: "contacts that go through the boundary and others that stop before it",
     resembles: &["nonlinear_stiffness", "force_saturation"],
     source: "springs in series and parallel; bilinear stiffness",
@@ -36,12 +55,23 @@ impl Effect for LayeredStiffness {
         &CARD
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
-        let depths = linear(0.15, 0.9, 8);
-        depths.iter().map(|part| Start::sized(&[0.1 * scene.stiffness, part * scene.depth], &[0])).collect()
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        let depths = linear(0.15, 0.9, 8).into_iter().map(|part| part * scene.depth);
+        let added = 0.1 * scene.stiffness;
+        if form == 0 {
+            return depths.map(|depth| Start::sized(&[added, depth], &[0])).collect();
+        }
+        depths.map(|depth| Start::sized(&[added, depth, 0.05 * scene.depth], &[0])).collect()
     }
 
-    fn touch(&self, _form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+        if form == 1 {
+            let transition = values[2].max(f64::MIN_POSITIVE);
+            let rest = rounded(-values[1], transition);
+            let beyond = rounded(touch.depth.abs() - values[1], transition) - rest;
+            touch.spring += values[0] * beyond.copysign(touch.depth);
+            return;
+        }
         let width = touch.velocity.abs() * touch.blur;
         let beyond = if touch.bilateral {
             touch.position.signum() * ramp(touch.position.abs() - values[1], width)

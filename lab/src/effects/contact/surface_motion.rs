@@ -63,6 +63,7 @@ impl Effect for SurfaceMotion {
             weight: Weight::Inside,
             frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, (2.0 * most) as usize)],
             size: 0.01 * scene.depth,
+            harmonics: 1,
             by_period: false,
         })
     }

@@ -82,6 +82,7 @@ impl Effect for TimeVaryingStiffness {
             weight: Weight::Depth,
             frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, 60)],
             size: 0.1,
+            harmonics: 1,
             by_period: false,
         })
     }

@@ -10,7 +10,12 @@ use crate::rig::Word;
 /// See [`CARD`].
 pub struct Cogging;
 
-const NEWTON: Word = Word::new("N", "N m");
+const fn part(name: &'static str) -> Parameter {
+    Parameter::new(name, Word::new("N", "N m"), "part of the ripple", f64::NEG_INFINITY, f64::INFINITY)
+}
+
+const PITCH: Parameter =
+    Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY).within(Limit::Way);
 
 static CARD: Card = Card {
     name: "cogging",
@@ -18,16 +23,18 @@ static CARD: Card = Card {
     stage: Stage::Load,
     most: 1,
     statement: "The drive pulls and pushes in a pattern that repeats along the way",
-    forms: &[Form {
-        name: "first_harmonic",
-        equation: "load = sine sin(2 pi position / pitch) + cosine cos(2 pi position / pitch)",
-        parameters: &[
-            Parameter::new("sine", NEWTON, "part of the ripple", f64::NEG_INFINITY, f64::INFINITY),
-            Parameter::new("cosine", NEWTON, "part of the ripple", f64::NEG_INFINITY, f64::INFINITY),
-            Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY)
-                .within(Limit::Way),
-        ],
-    }],
+    forms: &[
+        Form {
+            name: "first_harmonic",
+            equation: "load = sine sin(2 pi position / pitch) + cosine cos(2 pi position / pitch)",
+            parameters: &[part("sine"), part("cosine"), PITCH],
+        },
+        Form {
+            name: "two_harmonics",
+            equation: "load = sine sin(2 pi position / pitch) + cosine cos(2 pi position / pitch) + second_sine sin(4 pi position / pitch) + second_cosine cos(4 pi position / pitch)",
+            parameters: &[part("sine"), part("cosine"), part("second_sine"), part("second_cosine"), PITCH],
+        },
+    ],
     excited_by: "slow motion over many pitches",
     resembles: &["gravity_load"],
     source: "slot and magnet ripple of a motor, run-out of a gear",
@@ -42,7 +49,7 @@ impl Effect for Cogging {
         Vec::new()
     }
 
-    fn tones(&self, _form: usize, scene: &Scene) -> Option<Tones> {
+    fn tones(&self, form: usize, scene: &Scene) -> Option<Tones> {
         let way = scene.travel.1 - scene.travel.0;
         // Half a turn over the whole way apart. Below one and a half turns it is a slope, and no pattern has been seen.
         (way > 0.0).then(|| Tones {
@@ -50,15 +57,19 @@ impl Effect for Cogging {
             weight: Weight::Even,
             frequencies: vec![(1.5 / way, 0.5 / way, 120)],
             size: 0.02 * scene.effort,
+            harmonics: form + 1,
             by_period: true,
         })
     }
 
     fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
-        let turn = TAU / values[2].max(f64::MIN_POSITIVE);
-        let (sine, cosine) = (turn * push.position).sin_cos();
-        // What the smoothing filter leaves of a ripple that passes at this speed.
-        let left = (-0.5 * (turn * push.velocity * push.blur).powi(2)).exp();
-        push.resistance += left * (values[0] * sine + values[1] * cosine);
+        let Some((pitch, parts)) = values.split_last() else { return };
+        for (at, wave) in parts.chunks_exact(2).enumerate() {
+            let turn = TAU * (at + 1) as f64 / pitch.max(f64::MIN_POSITIVE);
+            let (sine, cosine) = (turn * push.position).sin_cos();
+            // What the smoothing filter leaves of a ripple that passes at this speed.
+            let left = (-0.5 * (turn * push.velocity * push.blur).powi(2)).exp();
+            push.resistance += left * (wave[0] * sine + wave[1] * cosine);
+        }
     }
 }

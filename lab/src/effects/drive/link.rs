@@ -10,6 +10,8 @@ pub struct Link {
     pub damping: f64,
     /// Of the motor's side.
     pub inertia: f64,
+    /// Viscous friction of the motor's side.
+    pub viscous: f64,
     /// Whole width of the gap.
     pub gap: f64,
 }
@@ -21,16 +23,15 @@ impl Link {
     /// Runs the motor's side over the last step and replaces the effort by what the link transmits.
     pub fn carry(&self, memory: &mut Memory, push: &mut Push) {
         // memory: motor position, its velocity, tool position, tool velocity, effort an instant ago, its rate, whether known.
-        push.inertia -= self.inertia;
         if self.stiffness <= 0.0 || self.inertia <= 0.0 {
-            push.inertia += self.inertia.max(0.0);
             return;
         }
         let steps = (push.step * self.fastest() / 0.2).ceil();
         if steps > MOST_STEPS {
-            push.inertia += self.inertia;
             return;
         }
+        push.inertia -= self.inertia;
+        push.viscous -= self.viscous;
         if memory[6] == 0.0 {
             let stretch = push.effort / self.stiffness;
             let lead = stretch + 0.5 * self.gap * stretch.signum();
@@ -52,7 +53,7 @@ impl Link {
             // motion would be pushed on by k span / 2 times its speed.
             motor += 0.5 * span * speed;
             let pull = self.pull(motor - way.at(middle), speed - mix(tool_speed, push.velocity, start));
-            speed += lightness * (effort.at(middle) - pull);
+            speed += lightness * (effort.at(middle) - pull - self.viscous * speed);
             motor += 0.5 * span * speed;
         }
         *memory = [motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0];

@@ -7,28 +7,50 @@ use crate::rig::Word;
 /// See [`CARD`].
 pub struct TransmissionCompliance;
 
+const LINK_STIFFNESS: Parameter = Parameter::new(
+    "link_stiffness",
+    Word::new("N/m", "N m/rad"),
+    "of cable, belt or gear, at the tool",
+    0.0,
+    f64::INFINITY,
+)
+.within(Limit::Swing);
+
+const MOTOR_SHARE: Parameter =
+    Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8);
+
+const DAMPING_RATIO: Parameter =
+    Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.005, 0.3);
+
 static CARD: Card = Card {
     name: "transmission_compliance",
     place: Place::Drive,
     stage: Stage::Transmission,
     most: 1,
     statement: "Between motor and tool something gives: the two do not move as one",
-    forms: &[Form {
-        name: "two_masses",
-        equation: "m1 d2y/dt2 = effort - T, m1 = motor_share m, T = link_stiffness (y - x) + c (v_y - v), c = 2 damping_ratio sqrt(link_stiffness m1); (m - m1) a + b v = T - F",
-        parameters: &[
-            Parameter::new(
-                "link_stiffness",
-                Word::new("N/m", "N m/rad"),
-                "of cable, belt or gear, at the tool",
-                0.0,
-                f64::INFINITY,
-            )
-            .within(Limit::Swing),
-            Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8),
-            Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.005, 0.3),
-        ],
-    }],
+    forms: &[
+        Form {
+            name: "two_masses",
+            equation: "m1 d2y/dt2 = effort - T, m1 = motor_share m, T = link_stiffness (y - x) + c (v_y - v), c = 2 damping_ratio sqrt(link_stiffness m1); (m - m1) a + b v = T - F",
+            parameters: &[LINK_STIFFNESS, MOTOR_SHARE, DAMPING_RATIO],
+        },
+        Form {
+            name: "friction_on_both_sides",
+            equation: "m1 d2y/dt2 + b1 v_y = effort - T, m1 = motor_share m, b1 = friction_share b, T = link_stiffness (y - x) + c (v_y - v), c = 2 damping_ratio sqrt(link_stiffness m1); (m - m1) a + (b - b1) v = T - F",
+            parameters: &[
+                LINK_STIFFNESS,
+                MOTOR_SHARE,
+                DAMPING_RATIO,
+                Parameter::new(
+                    "friction_share",
+                    Word::same("1"),
+                    "share of the viscous friction on the motor's side",
+                    0.0,
+                    1.0,
+                ),
+            ],
+        },
+    ],
     excited_by: "quick changes of effort, frequencies near the resonance",
     resembles: &["effort_lag", "backlash"],
     source: "W. J. Book, J. Dyn. Syst. Meas. Control 115 (1993) 252: the two-mass drive",
@@ -39,7 +61,7 @@ impl Effect for TransmissionCompliance {
         &CARD
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         // Without a force sensor nothing but the noise of the acceleration stands against a hidden motor.
         if !scene.has_force {
             return Vec::new();
@@ -47,26 +69,29 @@ impl Effect for TransmissionCompliance {
         let mut starts = Vec::new();
         for pulse in geometric(1.05 * scene.link_rate(), 5.0 * scene.link_rate(), 6) {
             for share in [0.2, 0.6] {
-                starts.push(Start::at(&[scene.inertia * pulse * pulse, share, 0.05]));
+                let values = [scene.inertia * pulse * pulse, share, 0.05, 0.5];
+                starts.push(Start::at(&values[..3 + form]));
             }
         }
         starts
     }
 
-    fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
+    fn push(&self, form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
         let motor = values[1] * push.inertia;
+        let viscous = if form == 0 { 0.0 } else { values[3] * push.viscous };
         if push.blur > 0.0 {
-            // memory: bend of what the tool's side bore an instant ago, whether it is known.
             // The motor leads the tool by T / k, later by c / k, and T is what the tool's side bears: its acceleration is seen,
             // not followed. A motor that is followed swings at its own rate with the noise of the tool's position.
-            let softness = motor / values[0].max(f64::MIN_POSITIVE);
-            let bend = (push.inertia - motor) * push.snap + push.viscous * push.jerk + push.force_bend;
-            let late = if memory[1] > 0.0 { 2.0 * values[2] * softness.sqrt() / push.step } else { 0.0 };
-            push.resistance += softness * (bend - late * (bend - memory[0]));
-            (memory[0], memory[1]) = (bend, 1.0);
+            let (tool, rest) = (push.inertia - motor, push.viscous - viscous);
+            let rise = tool * push.jerk + rest * push.acceleration + push.force_rate;
+            let bend = tool * push.snap + rest * push.jerk + push.force_bend;
+            let jerk = tool * push.crackle + rest * push.snap + push.force_jerk;
+            let softness = values[0].max(f64::MIN_POSITIVE).recip();
+            let late = 2.0 * values[2] * (motor * softness).max(0.0).sqrt();
+            push.resistance += softness * (motor * (bend - late * jerk) + viscous * (rise - late * bend));
             return;
         }
         let damping = 2.0 * values[2] * (values[0] * motor).max(0.0).sqrt();
-        Link { stiffness: values[0], damping, inertia: motor, gap: 0.0 }.carry(memory, push);
+        Link { stiffness: values[0], damping, inertia: motor, viscous, gap: 0.0 }.carry(memory, push);
     }
 }

@@ -1,6 +1,6 @@
 //! A zero that wanders.
 
-use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start};
+use crate::effects::{Card, Effect, Form, Limit, Parameter, Place, Reading, Scene, Stage, Start, geometric};
 use crate::rig::Word;
 
 /// See [`CARD`].
@@ -44,6 +44,21 @@ static CARD: Card = Card {
                 ),
             ],
         },
+        Form {
+            name: "settling",
+            equation: "reading = F + settled (1 - exp(-t / time_constant))",
+            parameters: &[
+                Parameter::new(
+                    "settled",
+                    Word::new("N", "N m"),
+                    "where the zero comes to rest",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                ),
+                Parameter::new("time_constant", Word::same("s"), "of its coming to rest", 0.0, f64::INFINITY)
+                    .within(Limit::Step),
+            ],
+        },
     ],
     excited_by: "free motion early and late",
     resembles: &["force_bias", "time_varying_stiffness", "surface_motion"],
@@ -62,13 +77,22 @@ impl Effect for ForceDrift {
         }
         let size = 0.01 * scene.force;
         let rate = size / scene.duration;
-        if form == 0 { vec![Start::sized(&[rate], &[0])] } else { vec![Start::sized(&[rate, size], &[0, 1])] }
+        match form {
+            0 => vec![Start::sized(&[rate], &[0])],
+            1 => vec![Start::sized(&[rate, size], &[0, 1])],
+            // Much slower is a ramp, much quicker an offset.
+            _ => geometric(0.1, 1.0, 4).iter().map(|part| Start::sized(&[size, part * scene.duration], &[0])).collect(),
+        }
     }
 
     fn read(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
-        let offset = if form == 0 { 0.0 } else { values[1] };
+        let zero = |time: f64| match form {
+            0 => values[0] * time,
+            1 => values[0] * time + values[1],
+            _ => -values[0] * (-time / values[1].max(f64::MIN_POSITIVE)).exp_m1(),
+        };
         for (at, force) in reading.force.iter_mut().enumerate() {
-            *force += values[0] * (reading.start + at as f64 * reading.step) + offset;
+            *force += zero(reading.start + at as f64 * reading.step);
         }
     }
 }

@@ -1,10 +1,13 @@
 //! A sensor at the end of its range.
 
-use crate::effects::{Card, Effect, Form, Limit, Parameter, Place, Reading, Scene, Stage, Start, linear};
+use crate::effects::{Card, Effect, Form, Limit, Parameter, Place, Reading, Scene, Stage, Start, linear, rounded};
 use crate::rig::Word;
 
 /// See [`CARD`].
 pub struct ForceSaturation;
+
+const LIMIT: Parameter =
+    Parameter::new("limit", Word::new("N", "N m"), "greatest reading", 0.0, f64::INFINITY).within(Limit::Range);
 
 static CARD: Card = Card {
     name: "force_saturation",
@@ -12,13 +15,23 @@ static CARD: Card = Card {
     stage: Stage::Range,
     most: 1,
     statement: "The force sensor does not show more than a certain force",
-    forms: &[Form {
-        name: "symmetric",
-        equation: "reading = F within -limit to limit",
-        parameters: &[
-            Parameter::new("limit", Word::new("N", "N m"), "greatest reading", 0.0, f64::INFINITY).within(Limit::Range)
-        ],
-    }],
+    forms: &[
+        Form { name: "symmetric", equation: "reading = F within -limit to limit", parameters: &[LIMIT] },
+        Form {
+            name: "rounded",
+            equation: "reading = F - knee ln(1 + exp((|F| - limit) / knee)) sign(F)",
+            parameters: &[
+                LIMIT,
+                Parameter::new(
+                    "knee",
+                    Word::new("N", "N m"),
+                    "how far from the limit it begins to give way",
+                    0.0,
+                    f64::INFINITY,
+                ),
+            ],
+        },
+    ],
     excited_by: "deep contacts beside shallow ones",
     resembles: &["layered_stiffness", "nonlinear_stiffness"],
     source: "range of amplifier or converter",
@@ -29,12 +42,23 @@ impl Effect for ForceSaturation {
         &CARD
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
-        linear(0.4, 0.99, 10).iter().map(|part| Start::at(&[part * scene.force])).collect()
+    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+        let limits = linear(0.4, 0.99, 10).into_iter().map(|part| part * scene.force);
+        if form == 0 {
+            return limits.map(|limit| Start::at(&[limit])).collect();
+        }
+        limits.flat_map(|limit| [0.01, 0.03].map(|part| Start::at(&[limit, part * limit]))).collect()
     }
 
-    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn read(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
         let limit = values[0].abs();
-        reading.force.iter_mut().for_each(|force| *force = force.max(-limit).min(limit));
+        if form == 0 {
+            reading.force.iter_mut().for_each(|force| *force = force.max(-limit).min(limit));
+            return;
+        }
+        let knee = values[1].max(f64::MIN_POSITIVE);
+        for force in reading.force.iter_mut() {
+            *force -= rounded(force.abs() - limit, knee).copysign(*force);
+        }
     }
 }

@@ -54,6 +54,7 @@ impl Effect for MainsHum {
             weight: Weight::Even,
             frequencies,
             size,
+            harmonics: 1,
             by_period: false,
         })
     }
