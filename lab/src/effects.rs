@@ -40,6 +40,12 @@ pub trait Effect: Sync {
     /// Where a search for its parameters starts, for form `form`, in the measures of `scene`.
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start>;
 
+    /// Whether form `form` only rounds off another of this effect: it is tried where that one was taken up, and nowhere else. A corner
+    /// that may be as round as it likes bends like any other law.
+    fn refines(&self, _form: usize) -> bool {
+        false
+    }
+
     /// For a form that repeats along time or way: where to look for its frequency. Its `starts` are then empty.
     fn tones(&self, _form: usize, _scene: &Scene) -> Option<Tones> {
         None

@@ -106,7 +106,7 @@ pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<J
     for _ in 0..3 {
         rivals = rivals_of(study, search);
         let stand = &search.rounds.last()?.stand;
-        let better = rivals.iter().filter(|rival| worth(rival) + 8.0 < stand.view.energy + free(&rival.instead_of));
+        let better = rivals.iter().filter(|rival| worth(rival) + 8.0 < stand.view.energy + rival.instead_of.price());
         let shown =
             |rival: &&Rival| !fit::is_at_limit(&rival.term, rival.model.trials(), &rival.fit.values, &stand.scene);
         let better = better.filter(shown);
@@ -229,12 +229,8 @@ fn wrong_values(study: &Study, stand: &Stand, fitted: f64) -> bool {
     given > WRONG_VALUES * WRONG_VALUES * fitted && given > fitted + 30.0
 }
 
-fn free(term: &Term) -> f64 {
-    4.0 * term.parameters().iter().filter(|parameter| !parameter.fixed).count() as f64
-}
-
 fn worth(rival: &Rival) -> f64 {
-    rival.fit.energy + free(&rival.term) + 1.5 * rival.chance
+    rival.fit.energy + rival.term.price() + 1.5 * rival.chance
 }
 
 /// Every effect in the place of each term of `stand`'s model, fitted.
@@ -247,11 +243,11 @@ fn rivals_of(study: &Study, search: &Search) -> Vec<Rival> {
         let (base, values) = without(&stand.model, &stand.values, at);
         let fitted = fit::fit(&data, &base, &values, &stand.scene);
         let remainder = Remainder::of(data, &base, &fitted.values, &stand.scene);
-        let mut scores = remainder.scores(&stand.scene, &|_| true);
+        let own = stand.model.terms[at];
+        let mut scores = remainder.scores(&stand.scene, &|term| !term.refines());
         scores.retain(|score| base.terms.iter().all(|term| term.name() != score.term.name()));
         scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         scores.truncate(TRIED);
-        let own = stand.model.terms[at];
         // What was not looked into does not explain the other channel.
         let drive = |term: &Term| term.effect.card().place == Place::Drive;
         if drive(&own) && study.doubtful(stand)[0] {

@@ -106,12 +106,40 @@ pub fn search(study: &Study, say: &dyn Fn(&str)) -> Search {
         }
         let more = model.terms.len() < MOST_EFFECTS && is_worth_more(study, &rounds, &round);
         let next = if more { acceptable(study, &round) } else { None };
-        let taken = next.map(|candidate| (candidate.model.clone(), candidate.values.clone()));
+        let taken = next.map(|candidate| refined(study, &round.stand, candidate));
         rounds.push(round);
         let Some(taken) = taken else { break };
         (model, values) = taken;
     }
     Search { rounds }
+}
+
+/// Energy, beside the price of its parameters, that a finer form has to take.
+const FINER: f64 = 8.0;
+
+/// Share of what lies above the floor that it has to take.
+const FINER_SHARE: f64 = 0.25;
+
+/// Model and values of `candidate`, or of a finer form of its effect that does better.
+fn refined(study: &Study, stand: &Stand, candidate: &Candidate) -> (Model, Vec<f64>) {
+    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
+    let remainder = Remainder::of(data, &stand.model, &stand.values, &stand.scene);
+    let finer = |term: &Term| term.refines() && term.name() == candidate.term.name();
+    // Far from the floor any bend takes a little: a corner that is round takes most of what the sharp one left.
+    let left = (candidate.energy - mean(stand)).max(0.0);
+    let own = candidate.energy + candidate.term.price() - FINER - FINER_SHARE * left;
+    let scores = remainder.scores(&stand.scene, &finer);
+    let fitted = scores.iter().map(|score| {
+        let score = remainder.polished(score, &stand.scene);
+        let model = stand.model.with(score.term);
+        let fit = study.search_fit(&data, stand, &model, &score.values);
+        (score.term, model, fit)
+    });
+    let better = fitted.filter(|(term, model, fit)| {
+        fit.energy + term.price() < own && !fit::is_at_limit(term, model.trials(), &fit.values, &stand.scene)
+    });
+    let best = better.min_by(|a, b| a.2.energy.total_cmp(&b.2.energy));
+    best.map_or_else(|| (candidate.model.clone(), candidate.values.clone()), |(_, model, fit)| (model, fit.values))
 }
 
 /// Power over the floor's that is left once something is named, below which nothing further is looked for: a residual five

@@ -102,7 +102,7 @@ impl Study {
         let whitener = floors.learnt(&self.rests(model, &values, &self.studio.trials));
         let scene = self.scene(model, &values);
         let truth = self.studio.truth(model, &origin);
-        let own_view = view(&self.studio.trials, &whitener, model, &values, &scene, &|_| true);
+        let own_view = view(&self.studio.trials, &whitener, model, &values, &scene, &|term| !term.refines());
         let promising: Vec<Term> = own_view.promising().map(|score| score.term).collect();
         let asked = |term: &Term| promising.iter().any(|other| other.is(term));
         let twins = (0..count as u64)

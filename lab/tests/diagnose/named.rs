@@ -141,7 +141,7 @@ fn a_hum_above_the_band() {
 #[test]
 fn a_gear_with_play() {
     let wish = Wish { sensors: Some(Grade::Fine), ..Wish::default() };
-    let (case, truth) = concealed((78, 5), ("backlash", 1.2), wish);
+    let (case, truth) = concealed((78, 5), ("backlash", 0.8), wish);
     let answer = case.diagnose(&[]);
     names(&answer, "backlash");
     let parameters = &answer["physics"][0]["parameters"];

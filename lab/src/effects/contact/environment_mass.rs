@@ -42,6 +42,10 @@ impl Effect for EnvironmentMass {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 1
+    }
+
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         let mass = 0.05 * scene.force / scene.acceleration.max(f64::MIN_POSITIVE);
         if form == 0 {

@@ -50,6 +50,10 @@ impl Effect for HuntCrossleyDamping {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 1
+    }
+
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         let growth = 0.1 * scene.stiffness / scene.speed.max(f64::MIN_POSITIVE);
         if form == 0 {

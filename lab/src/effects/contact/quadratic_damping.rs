@@ -50,6 +50,10 @@ impl Effect for QuadraticDamping {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 1
+    }
+
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         let speed = scene.speed.max(f64::MIN_POSITIVE);
         let drag = 0.1 * scene.stiffness * scene.depth;

@@ -1,7 +1,5 @@
 //! Play between motor and tool.
 
-use std::sync::LazyLock;
-
 use super::link::Link;
 use crate::effects::{
     Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Side, Stage, Start, geometric, linear,
@@ -44,15 +42,9 @@ const DECIDED: f64 = 3.0;
 /// Widths of the filter beyond which nothing is left of a step.
 const REACH: f64 = 5.0;
 
-/// The motor's way through the gap as powers of the time: the effort grows from nothing, is there at once, or the tool was
-/// stopped and the motor goes on; or it grows late.
-const POWERS: [f64; 4] = [3.0, 2.0, 1.0, 5.0];
-
-/// Rows from the peak to the strike that are tried: where the force goes on growing by itself, it peaks later.
-const SHIFTS: [f64; 4] = [0.0, -1.0, -2.0, -3.0];
-
-/// The same about the best of them.
-const NEAR: [f64; 4] = [-0.6, -0.3, 0.3, 0.6];
+/// Parts of the gap that the motor has gone through at the middles of four equal parts of its way, as shares of the time:
+/// the effort grows from nothing, and the way as the cube of the time.
+const QUARTERS: [f64; 4] = [0.5, 0.721, 0.855, 0.956];
 
 /// Longest way through the gap that is told, in widths of the filter: of a tool that rests, nothing says when the motor left.
 const LONGEST: f64 = 12.0;
@@ -65,42 +57,8 @@ struct Crossing {
     turn: f64,
 }
 
-/// How the motor went through the gap.
-#[derive(Clone, Copy)]
-struct Way {
-    /// Rows that it took.
-    span: f64,
-    /// Rows from the peak of the force to the strike.
-    shift: f64,
-    /// Shares of the time at which it was in the middle of each of four equal parts.
-    parts: [f64; 4],
-}
-
-/// `-x exp(-x^2 / 2)`: what the filter makes of the second derivative of a step, but for its size. By a table, straight between
-/// its places: off by less than 1e-4 of its peak.
-fn doublet(x: f64) -> f64 {
-    static TABLE: LazyLock<Vec<f64>> = LazyLock::new(|| {
-        let at = |place: usize| place as f64 / PLACES - REACH;
-        (0..=(2.0 * REACH * PLACES) as usize + 1).map(at).map(|x| -x * (-0.5 * x * x).exp()).collect()
-    });
-    if x.abs() >= REACH {
-        return 0.0;
-    }
-    let place = (x + REACH) * PLACES;
-    let below = place as usize;
-    TABLE[below] + (place - below as f64) * (TABLE[below + 1] - TABLE[below])
-}
-
-/// Places of the table from one width of the filter to the next.
-const PLACES: f64 = 64.0;
-
-/// The middles of four equal parts of a way that goes as `power` of the time.
-fn parts(power: f64) -> [f64; 4] {
-    [0.125, 0.375, 0.625, 0.875].map(|part: f64| part.powf(power.recip()))
-}
-
 /// Lengths of the way through the gap that are tried.
-const SPANS: usize = 8;
+const SPANS: usize = 12;
 
 /// Rows after the side is decided within which the strike is looked for.
 const LATE: usize = 2;
@@ -142,84 +100,33 @@ fn strike(force: &dyn Fn(usize) -> f64, at: usize, rows: usize) -> f64 {
 }
 
 impl Crossing {
-    /// Second derivative in `rows` rows from `first` on, behind the filter, of the motor's lead over the tool, on its `way` through a
-    /// gap of `size`.
-    fn bend(&self, side: &Side<'_>, way: &Way, size: f64, first: usize, rows: usize) -> Vec<f64> {
-        let mut bend = vec![0.0; rows];
-        let size = 0.25 * size * self.turn / (std::f64::consts::TAU.sqrt() * side.blur * side.blur);
-        let width = side.blur / side.step;
-        // Four equal parts of the gap, each gone through at once at the time of its middle.
-        for part in way.parts {
-            let there = self.strikes + way.shift - (1.0 - part) * way.span - first as f64;
-            let from = (there - REACH * width).max(0.0) as usize;
-            let to = ((there + REACH * width).max(0.0) as usize + 1).min(rows);
-            for (row, bend) in bend.iter_mut().enumerate().take(to).skip(from) {
-                *bend += size * doublet((row as f64 - there) / width);
-            }
-        }
-        bend
+    /// Second derivative at row `at`, behind the filter, of the motor's lead over the tool, whose way through a gap of one took `span`
+    /// rows.
+    fn bend(&self, side: &Side<'_>, span: f64, at: usize) -> f64 {
+        let quarter = |part: &f64| {
+            let past = (at as f64 - self.strikes + (1.0 - part) * span) * side.step / side.blur;
+            -past * (-0.5 * past * past).exp()
+        };
+        let sum: f64 = QUARTERS.iter().map(quarter).sum();
+        self.turn * 0.25 * sum / (std::f64::consts::TAU.sqrt() * side.blur * side.blur)
     }
 
-    /// Rows that the crossing, after one that struck at `before`, may have taken something of.
-    fn rows(&self, side: &Side<'_>, before: f64) -> (usize, usize, f64) {
-        let longest = (LONGEST * side.blur / side.step).min(self.strikes - before).max(1.0);
-        let tail = REACH * side.blur / side.step;
-        let first = (self.strikes - longest - tail).max(0.0) as usize;
-        (first, ((self.strikes + tail) as usize).min(side.velocity.len() - 1), longest)
-    }
-
-    /// What a crossing through a gap of one, that takes `size`, takes of the effort in the rows from `first` on, of which `rest` is
-    /// to be explained: of all ways the one that leaves the least of it. How long it took depends on an effort that grows
-    /// from nothing, and is told by the recording itself.
-    fn taken(&self, side: &Side<'_>, size: f64, first: usize, longest: f64, rest: &[f64]) -> Vec<f64> {
-        let tried = |way: Way| {
-            let taken = self.bend(side, &way, size, first, rest.len());
-            let left: f64 = taken.iter().zip(rest).map(|(taken, rest)| (rest - taken).powi(2)).sum();
-            (left, way, taken)
-        };
-        type Tried = (f64, Way, Vec<f64>);
-        let better = |best: Tried, way: Way| {
-            let other = tried(way);
-            if other.0 < best.0 { other } else { best }
-        };
-        let plain = Way { span: 0.5, shift: 0.0, parts: parts(POWERS[0]) };
-        let spans = geometric(0.5, longest.max(1.0), SPANS);
-        let all = spans.iter().flat_map(|span| SHIFTS.map(|shift| Way { span: *span, shift, ..plain }));
-        let mut best = all.fold(tried(plain), better);
-        best = NEAR.map(|near| Way { shift: best.1.shift + near, ..best.1 }).into_iter().fold(best, better);
-        let ratio = (spans[1] / spans[0]).sqrt();
-        let way = best.1;
-        let bent = POWERS.into_iter().flat_map(|power| {
-            [1.0, ratio, ratio.recip()].map(|part| Way { span: part * way.span, parts: parts(power), ..way })
+    /// First row of the crossing, and what it takes of the effort from there on, where a gap of one takes `size`: of all lengths of
+    /// the way the one that leaves the least of the balance. How long it took depends on an effort that grows from nothing,
+    /// and is told by the recording itself.
+    fn taken(&self, side: &Side<'_>, size: f64) -> (usize, Vec<f64>) {
+        let longest = LONGEST * side.blur / side.step;
+        let first = (self.strikes - longest).max(0.0) as usize;
+        let last = ((self.strikes + REACH * side.blur / side.step) as usize).min(side.velocity.len() - 1);
+        let tried = geometric(0.5, longest, SPANS).into_iter().map(|span| {
+            let taken: Vec<f64> = (first..=last).map(|at| size * self.bend(side, span, at)).collect();
+            let left: f64 = taken.iter().zip(first..).map(|(taken, at)| (side.rest(at) - taken).powi(2)).sum();
+            (left, taken)
         });
-        best = bent.fold(best, better);
-        best = NEAR.map(|near| Way { shift: best.1.shift + 0.4 * near, ..best.1 }).into_iter().fold(best, better);
-        // A motor that hung between the teeth had no gap to go through.
-        if best.0 < rest.iter().map(|rest| rest * rest).sum() { best.2 } else { vec![0.0; rest.len()] }
+        let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
+        (first, best.map_or_else(Vec::new, |(_, taken)| taken))
     }
 }
-
-/// What all `crossings` take, where each takes `size` of a gap of one.
-fn taken(crossings: &[Crossing], side: &Side<'_>, size: f64) -> Vec<f64> {
-    let mut all = vec![0.0; side.velocity.len()];
-    let mut own: Vec<Vec<f64>> = vec![Vec::new(); crossings.len()];
-    // One crossing begins where the one before has not faded: each is told from what the others leave.
-    for _ in 0..SWEEPS {
-        let mut before = f64::NEG_INFINITY;
-        for (crossing, own) in crossings.iter().zip(&mut own) {
-            let (first, last, longest) = crossing.rows(side, before);
-            all[first..].iter_mut().zip(own.iter()).for_each(|(all, own)| *all -= own);
-            let rest: Vec<f64> = (first..=last).map(|at| side.rest(at) - all[at]).collect();
-            *own = crossing.taken(side, size, first, longest, &rest);
-            all[first..].iter_mut().zip(own.iter()).for_each(|(all, own)| *all += own);
-            before = crossing.strikes;
-        }
-    }
-    all
-}
-
-/// How often each crossing is told from what the others leave.
-const SWEEPS: usize = 2;
 
 impl Effect for Backlash {
     fn card(&self) -> &'static Card {
@@ -241,7 +148,12 @@ impl Effect for Backlash {
     /// that is followed through the gap instead lands where the noise of the tool's position takes it.
     fn ahead(&self, _form: usize, values: &[f64], side: &Side<'_>) -> Option<Vec<f64>> {
         let motor = values[1] * side.inertia;
-        Some(taken(&crossings(side, side.inertia - motor), side, motor * values[0]))
+        let mut all = vec![0.0; side.velocity.len()];
+        for crossing in crossings(side, side.inertia - motor) {
+            let (first, taken) = crossing.taken(side, motor * values[0]);
+            all[first..].iter_mut().zip(&taken).for_each(|(all, taken)| *all += taken);
+        }
+        Some(all)
     }
 
     fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {

@@ -45,6 +45,10 @@ impl Effect for Cogging {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 1
+    }
+
     fn starts(&self, _form: usize, _scene: &Scene) -> Vec<Start> {
         Vec::new()
     }

@@ -51,6 +51,10 @@ impl Effect for StribeckFriction {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 1
+    }
+
     fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
         let level = 0.03 * scene.effort;
         let slowest = (0.03 * scene.speed).max(scene.slowest());

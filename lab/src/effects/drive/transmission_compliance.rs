@@ -61,6 +61,10 @@ impl Effect for TransmissionCompliance {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 1
+    }
+
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         // Without a force sensor nothing but the noise of the acceleration stands against a hidden motor.
         if !scene.has_force {

@@ -70,6 +70,10 @@ impl Effect for ForceDrift {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 2
+    }
+
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         // In one contact without a free moment after it, a drift is anything that grows with depth.
         if !scene.tells_time() && scene.free_span < 0.5 {

@@ -19,15 +19,15 @@ static CARD: Card = Card {
         Form { name: "symmetric", equation: "reading = F within -limit to limit", parameters: &[LIMIT] },
         Form {
             name: "rounded",
-            equation: "reading = F - knee ln(1 + exp((|F| - limit) / knee)) sign(F)",
+            equation: "reading = F - w ln(1 + exp((|F| - limit) / w)) sign(F), w = knee limit",
             parameters: &[
                 LIMIT,
                 Parameter::new(
                     "knee",
-                    Word::new("N", "N m"),
-                    "how far from the limit it begins to give way",
+                    Word::same("1"),
+                    "share of the limit over which it gives way; wider, and it is the law of the contact that bends",
                     0.0,
-                    f64::INFINITY,
+                    0.05,
                 ),
             ],
         },
@@ -42,12 +42,16 @@ impl Effect for ForceSaturation {
         &CARD
     }
 
+    fn refines(&self, form: usize) -> bool {
+        form == 1
+    }
+
     fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
         let limits = linear(0.4, 0.99, 10).into_iter().map(|part| part * scene.force);
         if form == 0 {
             return limits.map(|limit| Start::at(&[limit])).collect();
         }
-        limits.flat_map(|limit| [0.01, 0.03].map(|part| Start::at(&[limit, part * limit]))).collect()
+        limits.flat_map(|limit| [0.01, 0.03].map(|part| Start::at(&[limit, part]))).collect()
     }
 
     fn read(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
@@ -56,7 +60,7 @@ impl Effect for ForceSaturation {
             reading.force.iter_mut().for_each(|force| *force = force.max(-limit).min(limit));
             return;
         }
-        let knee = values[1].max(f64::MIN_POSITIVE);
+        let knee = (values[1] * limit).max(f64::MIN_POSITIVE);
         for force in reading.force.iter_mut() {
             *force -= rounded(force.abs() - limit, knee).copysign(*force);
         }
