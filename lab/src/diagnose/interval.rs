@@ -6,7 +6,7 @@ use super::fit::{self, Data};
 use super::judge::Judgement;
 use super::model::{Channels, index};
 use super::score::solve;
-use super::stand::Stand;
+use super::stand::{Stand, near};
 use super::study::Study;
 
 /// A value without the bias that twins show, and its 95 % interval.
@@ -46,7 +46,8 @@ pub fn estimates(study: &Study, stand: &Stand, judgement: &Judgement) -> Vec<Est
             let (low, high) = (axes[at].low, axes[at].high);
             // Twins of a drive that was cut keep its commands, which no filter has passed, beside a motion that has passed
             // one: what they are biased by is not what the recording is.
-            let fitted = if cut { stand.values[at] } else { stand.origin[at] - mean };
+            let fitted =
+                if cut { stand.values[at] } else { near(&stand.model, &stand.values, at, stand.origin[at] - mean) };
             let value = fitted.clamp(low, high);
             // What was fitted is not excluded by what twins say of its bias: they are only as good as the law.
             let (first, last) = ((value - half).min(stand.values[at]), (value + half).max(stand.values[at]));

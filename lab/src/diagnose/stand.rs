@@ -79,6 +79,14 @@ const DOUBT: f64 = 1.4;
 /// The same of a rounding's power in the balance of the drive.
 const SHAKEN: f64 = 0.02;
 
+/// `moved`, no further from the fitted value than a bias is believed: one of more than half an effect's value is not told from twins,
+/// and the effect is not turned off by it.
+#[must_use]
+pub fn near(model: &Model, values: &[f64], at: usize, moved: f64) -> f64 {
+    let part = if at < model.nominals() { f64::INFINITY } else { FAR * values[at].abs() };
+    moved.max(values[at] - part).min(values[at] + part)
+}
+
 impl Study {
     /// Stands on `model`: fits it under floors told by twins, and asks the recording and `count` twins the same questions.
     ///
@@ -170,9 +178,7 @@ impl Study {
             let mean = shifts.iter().map(|shift| shift[at]).sum::<f64>() / shifts.len().max(1) as f64;
             let most = FAR * axis.scale;
             let moved = (origin - mean.max(-most).min(most)).clamp(axis.low, axis.high);
-            // A bias of more than half an effect's value is not told from twins: the effect is not turned off by it.
-            let part = if at < model.nominals() { f64::INFINITY } else { FAR * values[at].abs() };
-            moved.max(values[at] - part).min(values[at] + part)
+            near(model, values, at, moved)
         });
         moved.collect()
     }

@@ -120,6 +120,22 @@ fn a_cable_that_gives() {
     found(&case.diagnose(&[]), "transmission_compliance", &expected);
 }
 
+/// Nature's law is not the textbook's first: the finer form is taken, and nothing beside it.
+#[test]
+fn laws_that_are_rounder_than_the_plain_ones() {
+    let wish = || Wish { sensors: Some(Grade::Fine), ..Wish::default() };
+    for (number, effect, pairs) in [
+        (3, "force_drift", &[("drift", "settled"), ("time_constant", "time_constant")][..]),
+        (0, "quadratic_damping", &[("exponent", "exponent")]),
+        (2, "environment_mass", &[("mass", "moved_mass")]),
+    ] {
+        let (case, truth) = concealed((90, number), (effect, 6.0), wish());
+        let own = |name: &str| truth.effects[0].parameters.iter().find(|own| own.name == name).unwrap().value;
+        let expected: Vec<_> = pairs.iter().map(|(theirs, ours)| (*ours, own(theirs))).collect();
+        found(&case.diagnose(&[]), effect, &expected);
+    }
+}
+
 /// A tone of 50 Hz where the filter of a coarse encoder's contact would end at 20.
 #[test]
 fn a_hum_above_the_band() {
@@ -141,7 +157,7 @@ fn a_hum_above_the_band() {
 #[test]
 fn a_gear_with_play() {
     let wish = Wish { sensors: Some(Grade::Fine), ..Wish::default() };
-    let (case, truth) = concealed((78, 5), ("backlash", 0.8), wish);
+    let (case, truth) = concealed((78, 5), ("backlash", 1.2), wish);
     let answer = case.diagnose(&[]);
     names(&answer, "backlash");
     let parameters = &answer["physics"][0]["parameters"];
@@ -151,8 +167,8 @@ fn a_gear_with_play() {
     let motor = 1.0 - truth[1].value / mass;
     println!("gap {gap:.3e} of {:.3e}, motor's share {share:.3} of {motor:.3}", truth[0].value);
     // What is seen is the motor's momentum: gap and mass lie on each other, and the way through the gap is taken for a
-    // cubic: two fifths too much, here.
-    assert!((gap * share / (truth[0].value * motor) - 1.0).abs() < 0.45, "{gap} {share}");
+    // cubic: nearly half too much, here.
+    assert!((gap * share / (truth[0].value * motor) - 1.0).abs() < 0.55, "{gap} {share}");
     // The drive lay at 2.3 floors.
     assert!(fit(&answer, "improved") < 1.3 * fit(&answer, "noise_floor"), "{}", answer["fit"]);
 }

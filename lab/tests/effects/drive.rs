@@ -91,6 +91,25 @@ fn a_stiff_link_is_no_link_and_a_soft_one_rings() {
     assert!(stiff < 1e-3 && stiffer < 0.6 * stiff && soft > 0.01);
 }
 
+/// Friction at the motor brakes the motor: through a stiff link that is the same, through a soft one it is not.
+#[test]
+fn friction_may_sit_on_either_side_of_a_link() {
+    let at = |stiffness: f64, share: f64| {
+        let table = format!(
+            "[[effect]]\nname = \"transmission_compliance\"\nlink_stiffness_n_m = {stiffness}\n\
+             motor_share = 0.375\ndamping_ratio = 0.1\nfriction_share = {share}\n"
+        );
+        run(&with(&free(REFERENCE), &table)).position
+    };
+    let apart = |stiffness: f64| crate::bench::apart(&at(stiffness, 0.0), &at(stiffness, 1.0));
+    let (stiff, soft) = (apart(1e6), apart(3e3));
+    println!("apart by {stiff:.1e} and {soft:.1e}");
+    assert!(stiff < 1e-4 && soft > 30.0 * stiff);
+    let plain = "[[effect]]\nname = \"transmission_compliance\"\nlink_stiffness_n_m = 3000\n\
+                 motor_share = 0.375\ndamping_ratio = 0.1\n";
+    assert_eq!(run(&with(&free(REFERENCE), plain)).position, at(3e3, 0.0));
+}
+
 #[test]
 fn a_link_is_resolved_whichever_side_is_the_lighter() {
     // The same link seen on rows four times as dense: the steps follow the rows, so the two agree only where both are

@@ -34,6 +34,21 @@ fn what_is_beyond_the_sensor_is_felt_in_free_motion_too() {
 }
 
 #[test]
+fn a_zero_settles_and_a_range_ends_in_a_knee() {
+    let plain = run(&rig(REFERENCE, false));
+    let reads = |table: &str| run(&with(&rig(REFERENCE, false), &format!("[[effect]]\n{table}")));
+    let drifts = reads("name = \"force_drift\"\nsettled_n = 0.4\ntime_constant_s = 1.5\n");
+    let ends = reads("name = \"force_saturation\"\nlimit_n = 2.5\nknee = 0.04\n");
+    assert!(force(&plain).iter().any(|force| *force > 3.0));
+    for (row, force_there) in force(&plain).iter().enumerate() {
+        let zero = 0.4 * (1.0 - (-(row as f64 / RATE) / 1.5).exp());
+        close(force(&drifts)[row], force_there + zero, 1e-12, "zero");
+        let over = force_there.abs() - 2.5;
+        close(force(&ends)[row], force_there - 0.1 * (over / 0.1).exp().ln_1p(), 1e-12, "range");
+    }
+}
+
+#[test]
 fn effects_come_before_noise_and_steps_and_the_chance_stays_the_same() {
     let noisy = Sensors { force_resolution: Some(0.05), force_noise: Some(0.09), ..rig(REFERENCE, true).sensors };
     let rig = Rig { sensors: noisy, ..rig(REFERENCE, true) };
