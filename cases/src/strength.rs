@@ -9,7 +9,7 @@ use crate::simulate::{PERIOD, Track};
 pub struct Residual {
     /// Of the force, fitted by K, B and surface.
     pub force: f64,
-    /// Of the effort less the measured force, fitted by m and b, in means over [`seen`].
+    /// Of the effort less the measured force, fitted by m and b, in means over as long as the encoder needs.
     pub effort: f64,
 }
 
