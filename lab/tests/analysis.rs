@@ -35,7 +35,7 @@ fn a_lens_leaves_a_parabola_its_velocity_and_its_acceleration() {
 }
 
 #[test]
-fn a_lens_leaves_a_quartic_its_third_and_fourth_derivative() {
+fn a_lens_leaves_a_polynomial_its_third_to_fifth_derivative() {
     for (blur, stride) in [(2e-3, 1), (4e-3, 3), (20e-3, 7)] {
         let lens = Lens::new(blur, 1e-3, stride);
         let time: Vec<f64> = (0..1000).map(|row| f64::from(row - 500) * 1e-3).collect();
@@ -47,6 +47,8 @@ fn a_lens_leaves_a_quartic_its_third_and_fourth_derivative() {
         let rounding = |power: i32| 1e-13 * blur.powi(-power);
         assert!(apart(&lens.jerk(&x), &jerk, edge) < rounding(3), "blur {blur}");
         assert!(apart(&lens.snap(&x), &vec![-168.0; seen.len()], edge) < rounding(4), "blur {blur}");
+        let quintic: Vec<f64> = x.iter().zip(&time).map(|(x, t)| x + 4.0 * t.powi(5)).collect();
+        assert!(apart(&lens.crackle(&quintic), &vec![480.0; seen.len()], edge) < rounding(5), "blur {blur}");
     }
 }
 

@@ -106,7 +106,8 @@ pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<J
     for _ in 0..3 {
         rivals = rivals_of(study, search);
         let stand = &search.rounds.last()?.stand;
-        let better = rivals.iter().filter(|rival| worth(rival) + 8.0 < stand.view.energy + rival.instead_of.price());
+        let better =
+            rivals.iter().filter(|rival| worth(rival) + select::BETTER < stand.view.energy + rival.instead_of.price());
         let shown =
             |rival: &&Rival| !fit::is_at_limit(&rival.term, rival.model.trials(), &rival.fit.values, &stand.scene);
         let better = better.filter(shown);
@@ -243,11 +244,11 @@ fn rivals_of(study: &Study, search: &Search) -> Vec<Rival> {
         let (base, values) = without(&stand.model, &stand.values, at);
         let fitted = fit::fit(&data, &base, &values, &stand.scene);
         let remainder = Remainder::of(data, &base, &fitted.values, &stand.scene);
-        let own = stand.model.terms[at];
         let mut scores = remainder.scores(&stand.scene, &|term| !term.refines());
         scores.retain(|score| base.terms.iter().all(|term| term.name() != score.term.name()));
         scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         scores.truncate(TRIED);
+        let own = stand.model.terms[at];
         // What was not looked into does not explain the other channel.
         let drive = |term: &Term| term.effect.card().place == Place::Drive;
         if drive(&own) && study.doubtful(stand)[0] {

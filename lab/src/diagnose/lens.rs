@@ -339,8 +339,8 @@ struct Kernels {
 
 impl Kernels {
     /// Taps for rows -reach..=reach, each of which lies `shift` rows later than its number says. Exact for polynomials,
-    /// however coarse the rows: level of 1 and x, slope of x, bend of x^2 come out as they should, what is higher of all up
-    /// to x^5 where nothing is shifted.
+    /// however coarse the rows: level of 1 and x, slope of x, bend of x^2 come out as they should, jerk, snap and crackle of
+    /// all up to x^4, x^5 and x^6 where nothing is shifted.
     fn new(width: f64, reach: usize, shift: f64, period: f64) -> Self {
         let places: Vec<f64> = (0..=2 * reach).map(|tap| tap as f64 - reach as f64 + shift).collect();
         let bell: Vec<f64> = places.iter().map(|x| (-0.5 * (x / width).powi(2)).exp()).collect();

@@ -114,11 +114,11 @@ pub fn search(study: &Study, say: &dyn Fn(&str)) -> Search {
     Search { rounds }
 }
 
-/// Energy, beside the price of its parameters, that a finer form has to take.
-const FINER: f64 = 8.0;
+/// Energy, beside the price of its parameters, that a rival or a finer form has to take to stand in a term's place.
+pub const BETTER: f64 = 8.0;
 
-/// Share of what lies above the floor that it has to take.
-const FINER_SHARE: f64 = 0.25;
+/// Share of what lies above the floor that a finer form has to take.
+const FINER: f64 = 0.25;
 
 /// Model and values of `candidate`, or of a finer form of its effect that does better.
 fn refined(study: &Study, stand: &Stand, candidate: &Candidate) -> (Model, Vec<f64>) {
@@ -127,7 +127,7 @@ fn refined(study: &Study, stand: &Stand, candidate: &Candidate) -> (Model, Vec<f
     let finer = |term: &Term| term.refines() && term.name() == candidate.term.name();
     // Far from the floor any bend takes a little: a corner that is round takes most of what the sharp one left.
     let left = (candidate.energy - mean(stand)).max(0.0);
-    let own = candidate.energy + candidate.term.price() - FINER - FINER_SHARE * left;
+    let own = candidate.energy + candidate.term.price() - BETTER - FINER * left;
     let scores = remainder.scores(&stand.scene, &finer);
     let fitted = scores.iter().map(|score| {
         let score = remainder.polished(score, &stand.scene);
