@@ -7,7 +7,7 @@ use super::fit::{self, Data, Fit};
 use super::fold::{self, HeldOut};
 use super::model::{Model, Term, index};
 use super::score::Remainder;
-use super::select::{self, ALARM, Search};
+use super::select::{self, ALARM, Round, Search};
 use super::stand::Stand;
 use super::study::Study;
 use crate::effects::Place;
@@ -102,6 +102,34 @@ const TRIED: usize = 10;
 /// Judges `search`; exchanges an effect for a rival that does better.
 pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<Judgement> {
     say("what else would explain it");
+    let rivals = settled(study, search, say)?;
+    let last = search.rounds.last()?;
+    let stand = &last.stand;
+    let nominal = study.fit(&study.nominal, &search.rounds.first()?.stand.values, &stand.whitener);
+    let taken = (nominal.energy - select::mean(stand)).max(f64::MIN_POSITIVE);
+    let share = ((nominal.energy - stand.view.energy) / taken).clamp(0.0, 1.0);
+    let held = |model: &Model, values: &[f64]| fold::held_out(study, &stand.whitener, model, values, &stand.scene);
+    let (refitted, improved) = (held(&study.nominal, &nominal.values), held(&stand.model, &stand.values));
+    let left = is_left(study, last, &improved);
+    let verdict = match (stand.model.terms.len() == study.nominal.terms.len(), left) {
+        (true, true) => Verdict::Unknown,
+        (true, false) if wrong_values(study, stand, nominal.energy) => Verdict::Parameters,
+        (true, false) => Verdict::NoMismatch,
+        (false, _) if is_worse(study, &refitted, &improved) => Verdict::Unknown,
+        (false, false) => Verdict::Explained,
+        (false, true) if share >= MOSTLY => Verdict::PartlyExplained,
+        (false, true) => Verdict::Unknown,
+    };
+    let is_named = matches!(verdict, Verdict::Explained | Verdict::PartlyExplained);
+    let named = if is_named { named(study, search) } else { Vec::new() };
+    let rivals = if is_named { close(stand, &named, rivals) } else { Vec::new() };
+    let left = left || verdict == Verdict::Unknown;
+    let as_given = fold::as_given(study, &stand.whitener, &study.nominal, &study.given);
+    Some(Judgement { verdict, named, rivals, share, left, nominal, as_given, refitted, improved })
+}
+
+/// Exchanges effects for rivals that do better, takes off those that are not needed; what then could stand for each.
+fn settled(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<Vec<Rival>> {
     let mut rivals = Vec::new();
     for _ in 0..3 {
         rivals = rivals_of(study, search);
@@ -118,50 +146,30 @@ pub fn judge(study: &Study, search: &mut Search, say: &dyn Fn(&str)) -> Option<J
     if pruned(study, search, say) {
         rivals = rivals_of(study, search);
     }
-    let stand = &search.rounds.last()?.stand;
-    let nominal = study.fit(&study.nominal, &search.rounds.first()?.stand.values, &stand.whitener);
-    let floor = select::mean(stand);
-    let taken = (nominal.energy - floor).max(f64::MIN_POSITIVE);
-    let share = ((nominal.energy - stand.view.energy) / taken).clamp(0.0, 1.0);
-    let structure = search.rounds.last()?.structure;
+    Some(rivals)
+}
+
+/// Whether the model of the last `round` leaves structure, on data that it did not see (`improved`).
+fn is_left(study: &Study, round: &Round, improved: &HeldOut) -> bool {
+    let stand = &round.stand;
     let texture = stand.view.textures.iter().map(|texture| texture.gain).fold(0.0, f64::max);
-    let excess = (stand.view.energy - floor).max(texture) / stand.view.energy.max(f64::MIN_POSITIVE);
+    let excess = (stand.view.energy - select::mean(stand)).max(texture) / stand.view.energy.max(f64::MIN_POSITIVE);
     // What twins leave can differ in its pattern; where it is no larger, nothing that matters is left.
-    let improved = fold::held_out(study, &stand.whitener, &stand.model, &stand.values, &stand.scene);
-    let beyond = structure.p_value < ALARM && excess > NOTABLE;
+    let beyond = round.structure.p_value < ALARM && excess > NOTABLE;
     let (doubts, doubtful) = (study.doubts(&stand.values), study.doubtful(stand));
-    let left = [false, true].into_iter().zip(stand.power_ratios()).any(|(effort, ratio)| {
+    [false, true].into_iter().zip(stand.power_ratios()).any(|(effort, ratio)| {
         let Some(floor) = fold::floor(study, &stand.whitener, effort) else { return false };
         let times = fold::rms(study, &improved.rests, effort) / floor.max(f64::MIN_POSITIVE);
         let channel = usize::from(effort);
         times > FAR.max(doubts[channel].sqrt()) || times > 1.0 && !doubtful[channel] && ratio > BEYOND && beyond
-    });
-    let as_given = fold::as_given(study, &stand.whitener, &study.nominal, &study.given);
-    let verdict = match (stand.model.terms.len() == study.nominal.terms.len(), left) {
-        (true, true) => Verdict::Unknown,
-        (true, false) if wrong_values(study, stand, nominal.energy) => Verdict::Parameters,
-        (true, false) => Verdict::NoMismatch,
-        (false, false) => Verdict::Explained,
-        (false, true) if share >= MOSTLY => Verdict::PartlyExplained,
-        (false, true) => Verdict::Unknown,
-    };
-    let held = |model: &Model, values: &[f64]| fold::held_out(study, &stand.whitener, model, values, &stand.scene);
-    let refitted = held(&study.nominal, &nominal.values);
-    // A law that makes unseen data worse is no explanation, whatever it does to seen ones.
-    let worse = improved.energy > refitted.energy
-        || [false, true].into_iter().any(|effort| {
-            let rms = |held: &HeldOut| fold::rms(study, &held.rests, effort);
-            rms(&improved) > WORSE * rms(&refitted)
-        });
-    let verdict = match verdict {
-        Verdict::Explained | Verdict::PartlyExplained if worse => Verdict::Unknown,
-        verdict => verdict,
-    };
-    let is_named = matches!(verdict, Verdict::Explained | Verdict::PartlyExplained);
-    let named = if is_named { named(study, search) } else { Vec::new() };
-    let rivals = if is_named { close(stand, &named, rivals) } else { Vec::new() };
-    let left = left || verdict == Verdict::Unknown;
-    Some(Judgement { verdict, named, rivals, share, left, nominal, as_given, refitted, improved })
+    })
+}
+
+/// Whether an explanation makes unseen data worse, whatever it does to seen ones.
+fn is_worse(study: &Study, refitted: &HeldOut, improved: &HeldOut) -> bool {
+    let rms = |held: &HeldOut, effort| fold::rms(study, &held.rests, effort);
+    let grown = |effort| rms(improved, effort) > WORSE * rms(refitted, effort);
+    improved.energy > refitted.energy || grown(false) || grown(true)
 }
 
 /// Takes off, the least first, effects beside others without which unseen data are left as well or nearly so; whether there were

@@ -1,9 +1,11 @@
 //! What the simulation says of a recorded motion: the nominal rig and the effects added to it.
 
+mod balance;
+
 use super::track::{Track, Trial};
 use crate::effects::contact_law::{Active, Along};
-use crate::effects::{Effect, Memory, Parameter, Place, Push, Reading, Side, Stage};
-use crate::rig::{Contact, Drive};
+use crate::effects::{Effect, Parameter, Place, Reading};
+use crate::rig::Contact;
 
 /// An effect in a model.
 #[derive(Clone, Copy)]
@@ -292,77 +294,6 @@ impl Model {
         }
         force.iter_mut().for_each(|force| *force += self.force_zero);
         force
-    }
-
-    /// What is left of the drive's balance, the force on the tool being `force`.
-    #[must_use]
-    pub fn balance(&self, values: &[f64], trial: usize, track: &Track, force: impl Fn(usize) -> f64) -> Vec<f64> {
-        let (Some(effort), Some(rate)) = (&track.effort, &track.effort_rate) else { return Vec::new() };
-        let drive = Drive { inertia: values[index::INERTIA], viscous: values[index::VISCOUS] };
-        let late = values[index::EFFORT_TIMING];
-        let mut acting = self.at(Place::Drive, values, trial);
-        acting.sort_by_key(|(term, _)| term.effect.card().stage);
-        let cut = self.effort_limit(values, trial).and_then(|limit| Some(track.command.as_ref()?.cut(limit)));
-        let (effort, rate) = cut.as_ref().map_or((effort, rate), |[effort, rate]| (effort, rate));
-        let mut memories: Vec<Memory> = vec![Memory::default(); acting.len()];
-        let borne: Vec<f64> = (0..track.len()).map(&force).collect();
-        let driven: Vec<f64> = effort.iter().zip(rate).map(|(effort, rate)| effort - late * rate).collect();
-        let side = Side {
-            step: track.step,
-            blur: track.blur,
-            inertia: drive.inertia,
-            viscous: drive.viscous,
-            velocity: &track.velocity,
-            acceleration: &track.acceleration,
-            effort: &driven,
-            force: &borne,
-            noise: [track.speed_noise, track.shake_noise, track.force_noise],
-        };
-        let ahead: Vec<Option<Vec<f64>>> =
-            acting.iter().map(|(term, values)| term.effect.ahead(term.form, values, &side)).collect();
-        let (mut commanded, mut transmitted) = (0.0, 0.0);
-        let mut rest: Vec<f64> = (0..track.len())
-            .map(|at| {
-                let mut push = Push {
-                    time: at as f64 * track.step,
-                    step: if at == 0 { 0.0 } else { track.step },
-                    position: track.position[at],
-                    velocity: track.velocity[at],
-                    acceleration: track.acceleration[at],
-                    jerk: track.jerk[at],
-                    snap: track.snap[at],
-                    crackle: track.crackle[at],
-                    blur: track.blur,
-                    speed_noise: track.speed_noise,
-                    still: track.still[at],
-                    force: borne[at],
-                    force_rate: track.force_rate.as_ref().map_or(0.0, |rate| rate[at]),
-                    force_bend: track.force_bend.as_ref().map_or(0.0, |bend| bend[at]),
-                    force_jerk: track.force_jerk.as_ref().map_or(0.0, |jerk| jerk[at]),
-                    effort: driven[at],
-                    effort_rate: rate[at],
-                    inertia: drive.inertia,
-                    viscous: drive.viscous,
-                    resistance: 0.0,
-                };
-                for (((term, values), memory), ahead) in acting.iter().zip(&mut memories).zip(&ahead) {
-                    match ahead {
-                        Some(taken) => push.resistance += taken[at],
-                        None => term.effect.push(term.form, values, memory, &mut push),
-                    }
-                }
-                commanded += effort[at] * effort[at];
-                transmitted += push.effort * push.effort;
-                push.rest()
-            })
-            .collect();
-        if acting.iter().any(|(term, _)| term.effect.card().stage == Stage::Transmission) {
-            // A drive that transmits nothing to a tool that weighs nothing balances perfectly. What is left is counted in
-            // shares of what is transmitted, and that is no way out.
-            let share = (commanded / f64::max(transmitted, f64::MIN_POSITIVE)).sqrt();
-            rest.iter_mut().for_each(|rest| *rest *= share);
-        }
-        rest
     }
 
     /// The greatest effort that the drive gives in trial `trial`, where a term says so.
