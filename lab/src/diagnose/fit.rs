@@ -109,7 +109,7 @@ fn reach_of(parameter: &Parameter, term: &Term, scene: &Scene) -> (f64, f64) {
         Limit::Range => (0.15 * scene.force, high),
         Limit::Turns => (low.max(1.8 / scene.duration), high),
         Limit::Swing => (low.max(scene.inertia * scene.link_rate().powi(2)), high),
-        Limit::Way => (low, high.min((scene.travel.1 - scene.travel.0) / 1.4)),
+        Limit::Way => (low.max(2.0 * scene.resolution), high.min((scene.travel.1 - scene.travel.0) / 1.4)),
         Limit::Pace => (low.max(scene.slowest()), high),
     }
 }

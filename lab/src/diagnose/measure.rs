@@ -74,6 +74,7 @@ pub fn scene(trials: &[Trial], model: &Model, values: &[f64], sample: f64, is_ro
     let size = |(low, high): (f64, f64)| if low <= high { high.max(-low) } else { 0.0 };
     let travel = range(&|track, at| Some(track.position[at]));
     let force_range = range(&|track, at| track.force.as_ref().map(|force| force[at]));
+    let behind = || trials.iter().map(|trial| trial.drive.behind());
     let effort = size(range(&|track, at| track.effort.as_ref().map(|effort| effort[at])));
     let depth = if bilateral { (travel.1 - surface).max(surface - travel.0) } else { travel.1 - surface };
     let moving = mean_square(&|track, at| touching(track, at).then(|| track.velocity[at]));
@@ -89,7 +90,8 @@ pub fn scene(trials: &[Trial], model: &Model, values: &[f64], sample: f64, is_ro
         duration: tracks().map(|track| track.len() as f64 * track.step).fold(0.0, f64::max),
         step: tracks().next().map_or(1.0, |track| track.step),
         drive_step: trials.first().map_or(1.0, |trial| trial.drive.step),
-        pace: trials.iter().map(|trial| trial.drive.behind().pace).fold(0.0, f64::max),
+        pace: behind().map(|track| track.pace).fold(0.0, f64::max),
+        resolution: behind().map(|track| track.pace * track.blur).fold(0.0, f64::max),
         sample,
         stiffness: values[index::STIFFNESS],
         inertia: values[index::INERTIA],

@@ -64,6 +64,9 @@ const FAR: f64 = 0.5;
 /// Growth of what twins leave beyond which their origin is astray.
 const LOUD: f64 = 2.0;
 
+/// Times that twins follow values that go on.
+const PURSUED: usize = 2;
+
 /// Twins that tell the floor.
 const FOR_FLOOR: usize = 24;
 
@@ -95,17 +98,28 @@ impl Study {
     pub fn stand(&self, model: &Model, start: &[f64], count: usize, before: Option<&Whitener>) -> Stand {
         let first = self.glimpse(model, start, start);
         let floors = self.floors_of(model, &first, before);
-        let fitted = self.fit_under(model, start, &floors);
+        let mut fitted = self.fit_under(model, start, &floors);
         let mut origin = self.unbiased(model, &fitted, start, &floors, &first.twins);
-        // The floor depends on the values and they on the floor, weakly: twice is enough.
         let mut second = self.glimpse(model, &fitted, &origin);
         if loudness(&second.rests) > LOUD * loudness(&first.rests) {
             // Values that next to nothing tells apart were led astray.
             origin.clone_from(&fitted);
             second = self.glimpse(model, &fitted, &origin);
         }
-        let floors = self.floors_of(model, &second, before);
-        let values = self.fit_under(model, &fitted, &floors);
+        let mut floors = self.floors_of(model, &second, before);
+        let mut values = self.fit_under(model, &fitted, &floors);
+        // The floor depends on the values and they on the floor, weakly: twice is enough. Where much is missing they may yet have
+        // gone on, and twins of where they were would show that way as the sensors' noise.
+        for _ in 0..PURSUED {
+            if !self.has_left(model, &values, &second, &floors) {
+                break;
+            }
+            fitted.clone_from(&values);
+            origin.clone_from(&values);
+            second = self.glimpse(model, &fitted, &origin);
+            floors = self.floors_of(model, &second, before);
+            values = self.fit_under(model, &fitted, &floors);
+        }
         let noise = second.noise;
         let whitener = floors.learnt(&self.rests(model, &values, &self.studio.trials));
         let scene = self.scene(model, &values);
@@ -122,6 +136,18 @@ impl Study {
             })
             .collect();
         Stand { model: model.clone(), values, origin, scene, whitener, noise, view: own_view, twins }
+    }
+
+    /// Whether `values` leave far more of the twins than those do that the twins were seen by, in a channel.
+    fn has_left(&self, model: &Model, values: &[f64], glimpse: &Glimpse, floors: &Whitener) -> bool {
+        let plain = floors.forgetful();
+        let power = |rests: &[Vec<Rest>]| {
+            let powers = rests.iter().map(|rests| plain.powers(&plain.white(rests)));
+            powers.fold([0.0; 2], |sum, powers| [0, 1].map(|channel| sum[channel] + powers[channel]))
+        };
+        let rests: Vec<Vec<Rest>> = glimpse.twins.par_iter().map(|twin| self.rests(model, values, twin)).collect();
+        let (now, then) = (power(&rests), power(&glimpse.rests));
+        (0..2).any(|channel| now[channel] > LOUD * then[channel])
     }
 
     /// Twins made from `origin`, and what `values` leave of them.

@@ -86,7 +86,7 @@ pub enum Limit {
     Turns,
     /// A stiffness that carries the tool: it swings faster than the tool moves, or it carries nothing.
     Swing,
-    /// A pitch that comes round within the way, or it is a slope.
+    /// A pitch that comes round within the way, or it is a slope, and is longer than two steps of the encoder, or it is theirs.
     Way,
     /// A speed at which the encoder steps within the filter, or it is the encoder's.
     Pace,

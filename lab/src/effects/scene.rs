@@ -23,6 +23,8 @@ pub struct Scene {
     pub drive_step: f64,
     /// Speed at which the encoder steps once within the filter through which laws see the drive.
     pub pace: f64,
+    /// Step of the encoder, m or rad.
+    pub resolution: f64,
     /// Seconds of one raw sample.
     pub sample: f64,
     /// Fitted stiffness.

@@ -18,6 +18,7 @@ pub fn scene() -> Scene {
         step: 5e-3,
         drive_step: 1e-2,
         pace: 1e-3,
+        resolution: 1e-5,
         sample: 1e-3,
         stiffness: 300.0,
         inertia: 0.8,

@@ -55,11 +55,14 @@ impl Effect for Cogging {
 
     fn tones(&self, form: usize, scene: &Scene) -> Option<Tones> {
         let way = scene.travel.1 - scene.travel.0;
-        // Half a turn over the whole way apart. Below one and a half turns it is a slope, and no pattern has been seen.
-        (way > 0.0).then(|| Tones {
+        // Half a turn over the whole way apart. Below one and a half turns it is a slope, and no pattern has been seen. A pitch of
+        // less than two steps of the encoder is not seen either: what its steps are wrong by repeats with each of them.
+        let finest = (way / scene.resolution).clamp(0.0, f64::from(u32::MAX)) as usize;
+        let count = finest.saturating_sub(2).min(120);
+        (way > 0.0 && count > 0).then(|| Tones {
             abscissa: Abscissa::Position,
             weight: Weight::Even,
-            frequencies: vec![(1.5 / way, 0.5 / way, 120)],
+            frequencies: vec![(1.5 / way, 0.5 / way, count)],
             size: 0.02 * scene.effort,
             harmonics: form + 1,
             by_period: true,
