@@ -104,10 +104,9 @@ fn a_drive_at_the_end_of_its_effort() {
     finds(&case, "effort_saturation", &[("limit", 3.0)]);
 }
 
-/// A case of a simulation that shares no code with the effects, by seed and number: an effect of so many floors, and what else is
-/// wished for.
-fn concealed((seed, number): (u64, u64), (effect, strength): (&str, f64), wish: Wish) -> (Case, Truth) {
-    let wish = Wish { what: Some(What::single(effect, Some(strength))), ..wish };
+/// A case of a simulation that shares no code with the effects, by seed and number: what is missing, and what else is wished for.
+fn concealed((seed, number): (u64, u64), what: What, wish: Wish) -> (Case, Truth) {
+    let wish = Wish { what: Some(what), ..wish };
     let drawn = draw(seed, number, &wish).unwrap();
     let case = Case { folder: TempDir::new().unwrap() };
     drawn.write(case.folder.path()).unwrap();
@@ -119,7 +118,7 @@ fn concealed((seed, number): (u64, u64), (effect, strength): (&str, f64), wish: 
 #[test]
 fn a_cable_that_gives() {
     let wish = Wish { sensors: Some(Grade::Fine), reference: Some(Kind::Rich), ..Wish::default() };
-    let (case, truth) = concealed((77, 0), ("transmission_compliance", 3.0), wish);
+    let (case, truth) = concealed((77, 0), What::single("transmission_compliance", Some(3.0)), wish);
     let own = |name: &str| truth.effects[0].parameters.iter().find(|parameter| parameter.name == name).unwrap().value;
     let expected = [("link_stiffness", own("stiffness")), ("motor_share", 1.0 - own("tool_mass") / truth.nominal.mass)];
     found(&case.diagnose(&[]), "transmission_compliance", &expected);
@@ -134,7 +133,7 @@ fn laws_that_are_rounder_than_the_plain_ones() {
         (0, "quadratic_damping", &[("exponent", "exponent")]),
         (2, "environment_mass", &[("mass", "moved_mass")]),
     ] {
-        let (case, truth) = concealed((90, number), (effect, 6.0), wish());
+        let (case, truth) = concealed((90, number), What::single(effect, Some(6.0)), wish());
         let own = |name: &str| truth.effects[0].parameters.iter().find(|own| own.name == name).unwrap().value;
         let expected: Vec<_> = pairs.iter().map(|(theirs, ours)| (*ours, own(theirs))).collect();
         let answer = case.diagnose(&[]);
@@ -144,11 +143,29 @@ fn laws_that_are_rounder_than_the_plain_ones() {
     }
 }
 
+/// So much is missing that the values go on while the floor is sought: twins of where they had been, held against where they went,
+/// left five times the noise.
+#[test]
+fn a_liquid_that_is_pushed_aside() {
+    let (case, truth) = concealed((2026, 623), What::single("quadratic_damping", None), Wish::default());
+    let answer = case.diagnose(&[]);
+    told(&answer, "quadratic_damping", &[("quadratic", truth.effects[0].parameters[0].value)]);
+    assert!(fit(&answer, "improved") < 0.2 * fit(&answer, "refitted"), "{}", answer["fit"]);
+}
+
+/// Nothing is missing, and what the steps of a coarse encoder are wrong by repeats with each of them.
+#[test]
+fn steps_of_an_encoder_are_no_ripple() {
+    let (case, _) = concealed((2026, 112), What::Nothing, Wish::default());
+    let answer = case.diagnose(&[]);
+    assert_eq!(answer["physics"], serde_json::json!([]), "{}", answer["summary"]);
+}
+
 /// A tone of 50 Hz where the filter of a coarse encoder's contact would end at 20.
 #[test]
 fn a_hum_above_the_band() {
     let wish = Wish { sensors: Some(Grade::Coarse), ..Wish::default() };
-    let (case, truth) = concealed((91, 1), ("mains_hum", 1.0), wish);
+    let (case, truth) = concealed((91, 1), What::single("mains_hum", Some(1.0)), wish);
     let answer = case.diagnose(&[]);
     names(&answer, "mains_hum");
     let parameters = &answer["physics"][0]["parameters"];
@@ -165,7 +182,7 @@ fn a_hum_above_the_band() {
 #[test]
 fn a_gear_with_play() {
     let wish = Wish { sensors: Some(Grade::Fine), ..Wish::default() };
-    let (case, truth) = concealed((78, 5), ("backlash", 1.2), wish);
+    let (case, truth) = concealed((78, 5), What::single("backlash", Some(1.2)), wish);
     let answer = case.diagnose(&[]);
     names(&answer, "backlash");
     let parameters = &answer["physics"][0]["parameters"];
