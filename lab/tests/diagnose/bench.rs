@@ -17,35 +17,42 @@ pub const FADES: &str =
 pub struct Size {
     pub metre: f64,
     pub newton: f64,
+    /// Seconds of a bench second: all that the pad and the tool do takes so much longer.
+    pub second: f64,
     pub rate_hz: f64,
+    /// Bench seconds.
     pub duration_s: f64,
     /// Step of the position sensor, in bench metres.
     pub count: f64,
 }
 
 /// Millimetres and newtons.
-pub const BENCH: Size = Size { metre: 1.0, newton: 1.0, rate_hz: 400.0, duration_s: 5.0, count: 5e-6 };
+pub const BENCH: Size = Size { metre: 1.0, newton: 1.0, second: 1.0, rate_hz: 400.0, duration_s: 5.0, count: 5e-6 };
 
 /// A rig that touches a pad of `stiffness`, led along one of two references.
 pub fn led(size: Size, stiffness: f64, trial: usize) -> String {
-    let (l, f) = (size.metre, size.newton);
+    let (l, f, t) = (size.metre, size.newton, size.second);
     let (depth, contact, sine) = [(0.008, 1.1, 3.0), (0.007, 1.0, 7.3)][trial];
     format!(
         "[rig]\nname = \"bench\"\ncoordinate = \"linear\"\n\
          [contact]\nmodel = \"kelvin_voigt\"\nsurface_m = 0.0\nstiffness_n_m = {:e}\ndamping_n_s_m = {:e}\n\
          [sensors]\nposition_resolution_m = {:e}\nforce_resolution_n = {:e}\nforce_noise_n = {:e}\n\
-         [reference]\nfree_depth_m = {:e}\ncontact_depth_m = {:e}\nperiod_s = 1.6\ncontact_s = {contact}\n\
-         smoothing_s = 0.05\nsine_amplitude_m = {:e}\nsine_frequency_hz = {sine}\n\
+         [reference]\nfree_depth_m = {:e}\ncontact_depth_m = {:e}\nperiod_s = {}\ncontact_s = {}\n\
+         smoothing_s = {}\nsine_amplitude_m = {:e}\nsine_frequency_hz = {}\n\
          [simulation]\nduration_s = {}\nrate_hz = {}\n",
         stiffness * f / l,
-        5.0 * f / l,
+        5.0 * f * t / l,
         size.count * l,
         0.005 * f,
         0.01 * f,
         -0.003 * l,
         depth * l,
+        1.6 * t,
+        contact * t,
+        0.05 * t,
         0.002 * l,
-        size.duration_s,
+        sine / t,
+        size.duration_s * t,
         size.rate_hz
     )
 }
