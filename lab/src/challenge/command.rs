@@ -17,7 +17,7 @@ use crate::outfile::OutFile;
 /// Put the diagnosis to recordings whose missing effect is concealed from it
 #[derive(Debug, Clone, Args)]
 pub struct ChallengeArgs {
-    /// How many of the 1580 cases, an even sample; all of them take some ten hours. None: real recordings alone
+    /// How many of the 1580 cases, an even sample; all of them take hours. None: real recordings alone
     #[arg(long, value_name = "N", default_value_t = 60)]
     pub cases: usize,
     /// Seed of the cases: the same seed, the same recordings
