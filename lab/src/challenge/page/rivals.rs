@@ -18,7 +18,7 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
                 "Plain BIC chooses among the very laws of the diagnosis, by the criterion of the textbooks. PySINDy and SysIdentPy regress on \
                  libraries of terms; what their terms stand for is written in their scripts. All fit one trial and foretell the other."
             }
-            div.wide { table {
+            div.wide { table.others {
                 thead { tr { th { "who" } th { "alarms where nothing is missing" } th { "effects at least the floor: named, and nothing else" } th { "RMS left of them on unseen data, of the refitted law's" } th { "seconds" } th { "no answer" } } }
                 tbody { @for standing in &standings { (line(standing)) } }
             } }
