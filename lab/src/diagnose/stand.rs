@@ -98,7 +98,7 @@ impl Study {
     pub fn stand(&self, model: &Model, start: &[f64], count: usize, before: Option<&Whitener>) -> Stand {
         let first = self.glimpse(model, start, start);
         let floors = self.floors_of(model, &first, before);
-        let mut fitted = self.fit_under(model, start, &floors);
+        let fitted = self.fit_under(model, start, &floors);
         let mut origin = self.unbiased(model, &fitted, start, &floors, &first.twins);
         let mut second = self.glimpse(model, &fitted, &origin);
         if loudness(&second.rests) > LOUD * loudness(&first.rests) {
@@ -114,11 +114,10 @@ impl Study {
             if !self.has_left(model, &values, &second, &floors) {
                 break;
             }
-            fitted.clone_from(&values);
             origin.clone_from(&values);
-            second = self.glimpse(model, &fitted, &origin);
+            second = self.glimpse(model, &values, &origin);
             floors = self.floors_of(model, &second, before);
-            values = self.fit_under(model, &fitted, &floors);
+            values = self.fit_under(model, &values, &floors);
         }
         let noise = second.noise;
         let whitener = floors.learnt(&self.rests(model, &values, &self.studio.trials));
