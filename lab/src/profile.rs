@@ -1,4 +1,5 @@
-//! `palpate profile`: what each estimator costs on the device, counted twice.
+//! `palpate profile`: what each estimator costs on the device, counted twice. Beside what running an image takes it needs
+//! `llvm-objdump`, which rustup has as `llvm-tools`.
 
 mod budget;
 mod calls;
@@ -36,7 +37,7 @@ pub struct ProfileArgs {
     /// Write the figures as JSON; `-`: to standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write a page that shows where the instructions go
+    /// Write a page that shows where the instructions go (disassembled by llvm-objdump, of rustup's llvm-tools)
     #[arg(long, value_name = "FILE.html")]
     pub listing: Option<PathBuf>,
     /// Write the figures into the sources as the budget that the tests hold them against
@@ -76,7 +77,7 @@ impl Profile {
     /// # Errors
     /// As [`Self::take`].
     pub fn of(leave: Leave, package: &str, example: &str) -> Result<Self> {
-        let emulator = emulator::Emulator::prepare(tools::for_the_device(leave)?)?;
+        let emulator = emulator::Emulator::prepare(tools::for_profiling(leave)?)?;
         let image = Image::read(&device::build(package, example)?)?;
         let cases = counts::combine(&emulator.with_plugin(&image)?, &emulator.with_clock(&image)?)?;
         let figures = figures::of(&image, &cases, &trial::updates(&trial::samples()?)?)?;

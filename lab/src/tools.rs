@@ -1,4 +1,4 @@
-//! What the project needs beside Rust: the cross target and QEMU. Found, installed where that is allowed, or asked for.
+//! What the project needs beside Rust: the cross target, QEMU and a disassembler. Found, installed where that is allowed, or asked for.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -8,6 +8,9 @@ pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// The emulator of the board.
 pub const QEMU: &str = "qemu-system-arm";
+
+/// The disassembler of the images.
+pub const DISASSEMBLER: &str = "llvm-objdump";
 
 /// Set to anything: nothing is installed, only asked for.
 pub const NO_INSTALL: &str = "PALPATE_NO_INSTALL";
@@ -49,6 +52,20 @@ pub fn for_the_device(leave: Leave) -> Result<PathBuf, MissingTools> {
     }
 }
 
+/// As [`for_the_device`], with the disassembler that counting instructions takes; QEMU's path.
+///
+/// # Errors
+/// All that is not there and cannot be installed.
+pub fn for_profiling(leave: Leave) -> Result<PathBuf, MissingTools> {
+    match (for_the_device(leave), disassembler(leave)) {
+        (Ok(qemu), Ok(_)) => Ok(qemu),
+        (device, disassembler) => {
+            let missing = device.err().map_or_else(Vec::new, |MissingTools(missing)| missing);
+            Err(MissingTools(missing.into_iter().chain(disassembler.err()).collect()))
+        }
+    }
+}
+
 /// Finds the cross target, or adds it by rustup.
 ///
 /// # Errors
@@ -72,12 +89,39 @@ pub fn cross_target(leave: Leave) -> Result<(), Missing> {
 
 /// The target's own core library stands in the sysroot, whoever put it there.
 fn target_is_installed() -> bool {
+    rustlib().is_some_and(|rustlib| rustlib.join(TARGET).join("lib").is_dir())
+}
+
+/// The folder of the toolchain that holds a folder for each target.
+fn rustlib() -> Option<PathBuf> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let sysroot = Command::new(rustc).args(["--print", "sysroot"]).output();
-    sysroot.is_ok_and(|output| {
-        let sysroot = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
-        sysroot.join("lib/rustlib").join(TARGET).join("lib").is_dir()
-    })
+    let output = Command::new(rustc).args(["--print", "sysroot"]).output().ok()?;
+    Some(PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()).join("lib/rustlib"))
+}
+
+/// Finds `llvm-objdump`, the toolchain's own or the system's, or adds the toolchain's by rustup.
+///
+/// # Errors
+/// It is not there and cannot be added.
+pub fn disassembler(leave: Leave) -> Result<PathBuf, Missing> {
+    if let Some(found) = find_disassembler() {
+        return Ok(found);
+    }
+    let command = ["rustup", "component", "add", "llvm-tools"];
+    let missing = |why: String| Missing { what: DISASSEMBLER, why, command: command.join(" ") };
+    if let Some(why) = leave.refused() {
+        return Err(missing(why));
+    }
+    install(DISASSEMBLER, "to count what an image executes", &command).map_err(missing)?;
+    find_disassembler().ok_or_else(|| missing("rustup added llvm-tools, yet it is not in the toolchain".to_owned()))
+}
+
+/// The toolchain's own first: it knows what its compiler makes. It stands in the folder of the host, one of few.
+fn find_disassembler() -> Option<PathBuf> {
+    let folders = rustlib().and_then(|rustlib| std::fs::read_dir(rustlib).ok()).into_iter().flatten().flatten();
+    let file = format!("{DISASSEMBLER}{}", std::env::consts::EXE_SUFFIX);
+    let mut candidates = folders.map(|folder| folder.path().join("bin").join(&file));
+    candidates.find(|candidate| candidate.is_file()).or_else(|| which::which(DISASSEMBLER).ok())
 }
 
 /// Finds QEMU, or installs it by the system's package manager.

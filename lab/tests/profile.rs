@@ -1,6 +1,6 @@
 //! What the estimators cost on the device, and that their interrupt cannot panic.
 //!
-//! Without the cross target or QEMU these tests say so and pass, unless `PALPATE_DEVICE=required` (as `cargo verify`
+//! Without the cross target, QEMU or llvm-objdump these tests say so and pass, unless `PALPATE_DEVICE=required` (as `cargo verify`
 //! sets it where it has set them up).
 
 use palpate_lab::profile::{Profile, interrupt_image, panics_reached_from};
@@ -8,7 +8,7 @@ use palpate_lab::tools::{self, Leave, MissingTools};
 
 /// Whether the tools are there; else a word, and an end where they are required.
 fn ready() -> bool {
-    match tools::for_the_device(Leave::Look) {
+    match tools::for_profiling(Leave::Look) {
         Ok(_) => true,
         Err(MissingTools(missing)) => {
             assert!(std::env::var_os("PALPATE_DEVICE").is_none(), "{missing:?}");

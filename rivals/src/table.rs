@@ -141,7 +141,7 @@ mod tests {
         );
         // Of our own rows another test sees to it that they cost what the budget says.
         let budget = kept_costs().expect("the budget");
-        let rivals = match tools::for_the_device(Leave::Look) {
+        let rivals = match tools::for_profiling(Leave::Look) {
             Ok(_) => {
                 Some(Profile::of(Leave::Look, "palpate-rivals", "rivals").unwrap_or_else(|error| panic!("{error:#}")))
             }

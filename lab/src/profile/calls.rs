@@ -57,7 +57,7 @@ impl<'a> Calls<'a> {
     }
 
     /// Bytes of stack of all functions that are reached from `start`, one after the other: a bound where the deepest way cannot be
-    /// told, for a constant among the code may read as a call that closes a ring.
+    /// told, because a function calls itself.
     pub fn frames(&self, start: u32) -> u32 {
         self.reached(start).iter().map(|function| self.frame(function.start)).sum()
     }

@@ -1,12 +1,13 @@
-//! An image as it stands in its file: symbols, code, and what each instruction is.
+//! An image as it stands in its file: symbols, code, and what each instruction is, as `llvm-objdump` has it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use anyhow::{Context, Result};
-use capstone::arch::BuildsCapstone as _;
-use capstone::prelude::*;
+use anyhow::{Context, Result, ensure};
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionKind, SymbolKind};
+
+use crate::tools::{self, Leave, MissingTools};
 
 /// One instruction.
 #[derive(Debug, Clone)]
@@ -54,9 +55,12 @@ impl Image {
         let mut image =
             Self { path: path.to_owned(), code: BTreeMap::new(), functions: BTreeMap::new(), labels: BTreeMap::new() };
         image.name(&file);
-        for section in file.sections().filter(|section| section.kind() == SectionKind::Text) {
-            image.disassemble(section.data()?, u32::try_from(section.address())?)?;
-        }
+        let text: Vec<(u32, &[u8])> = file
+            .sections()
+            .filter(|section| section.kind() == SectionKind::Text)
+            .map(|section| Ok((u32::try_from(section.address())?, section.data()?)))
+            .collect::<Result<_>>()?;
+        image.code = disassembled(path, &text)?;
         Ok(image)
     }
 
@@ -83,34 +87,6 @@ impl Image {
         }
     }
 
-    fn disassemble(&mut self, code: &[u8], start: u32) -> Result<()> {
-        let decoder = Capstone::new()
-            .arm()
-            .mode(arch::arm::ArchMode::Thumb)
-            .extra_mode([arch::arm::ArchExtraMode::MClass].into_iter())
-            .build();
-        let decoder = decoder.map_err(|error| anyhow::anyhow!("no disassembler: {error}"))?;
-        let functions: Vec<Function> = self.functions.values().cloned().collect();
-        for function in functions {
-            let (Some(from), Some(to)) = (function.start.checked_sub(start), function.end.checked_sub(start)) else {
-                continue;
-            };
-            let mut at = from as usize;
-            while let Some(rest) = code.get(at..to as usize).filter(|rest| rest.len() >= 2) {
-                let address = start + u32::try_from(at)?;
-                let found = decoder.disasm_count(rest, address.into(), 1).ok();
-                let Some(found) = found.as_ref().and_then(|all| all.first()) else {
-                    // A word among the code.
-                    at += 2;
-                    continue;
-                };
-                at += found.len();
-                self.code.insert(address, instruction(found));
-            }
-        }
-        Ok(())
-    }
-
     /// The address of a label.
     ///
     /// # Errors
@@ -125,17 +101,91 @@ impl Image {
     }
 }
 
-fn instruction(found: &capstone::Insn<'_>) -> Instruction {
-    let mnemonic = found.mnemonic().unwrap_or_default().to_owned();
-    let operands = found.op_str().unwrap_or_default().to_owned();
-    let last = operands.rsplit(", ").next().unwrap_or_default();
+/// Every instruction of the file by its address, `text` being its sections of code, each with its own. Constants among the
+/// code are marked as such by the file's symbols, and left out.
+fn disassembled(path: &Path, text: &[(u32, &[u8])]) -> Result<BTreeMap<u32, Instruction>> {
+    let disassembler = tools::disassembler(Leave::Look).map_err(|missing| MissingTools(vec![missing]))?;
+    let output = Command::new(&disassembler)
+        .args(["--disassemble", "--no-show-raw-insn"])
+        .arg(path)
+        .output()
+        .with_context(|| format!("cannot run {}", disassembler.display()))?;
+    let errors = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "{} failed: {}", disassembler.display(), errors.trim());
+    let listing = String::from_utf8(output.stdout).context("the disassembly is not UTF-8")?;
+    let sized = |(at, found): (u32, Instruction)| Some((at, Instruction { size: size(text, at)?, ..found }));
+    let code: BTreeMap<u32, Instruction> = listing.lines().filter_map(instruction).filter_map(sized).collect();
+    ensure!(!code.is_empty(), "{} found no code in {}", disassembler.display(), path.display());
+    Ok(code)
+}
+
+/// Bytes of the instruction at `address`: four where its first halfword begins with 11101, 11110 or 11111 (ARMv7-M,
+/// A5.1), else two. `None` out of the code.
+fn size(text: &[(u32, &[u8])], address: u32) -> Option<u32> {
+    text.iter().find_map(|(start, bytes)| {
+        let upper = bytes.get(address.checked_sub(*start)? as usize + 1)?;
+        Some(if upper >> 3 >= 0b11101 { 4 } else { 2 })
+    })
+}
+
+/// One line of the listing, ` ADDRESS:  <tab>MNEMONIC<tab>OPERANDS  @ comment`; it does not say the instruction's size.
+fn instruction(line: &str) -> Option<(u32, Instruction)> {
+    let (address, rest) = line.split_once(':')?;
+    let address = u32::from_str_radix(address.trim(), 16).ok()?;
+    let text = rest.split('@').next()?.trim();
+    let (mnemonic, operands) = text.split_once('\t').unwrap_or((text, ""));
+    let operands = operands.trim();
+    // Constants: `.word` and its kin, behind their bytes or alone, and what is no instruction of this processor.
+    let is_name = mnemonic.starts_with(|c: char| c.is_ascii_lowercase())
+        && mnemonic.chars().all(|c| c.is_ascii_alphanumeric() || c == '.');
+    if !is_name || operands.starts_with('.') {
+        return None;
+    }
     let branches = mnemonic.starts_with('b') && !mnemonic.starts_with("bic") && !mnemonic.starts_with("bf")
         || mnemonic.starts_with("cb");
-    let target = last.strip_prefix("#0x").filter(|_| branches).and_then(|hex| u32::from_str_radix(hex, 16).ok());
-    Instruction { size: u32::try_from(found.len()).unwrap_or(2), mnemonic, operands, target }
+    let last = operands.rsplit(", ").next().and_then(|last| last.split_whitespace().next()).unwrap_or_default();
+    let target = last.strip_prefix("0x").filter(|_| branches).and_then(|hex| u32::from_str_radix(hex, 16).ok());
+    Some((address, Instruction { size: 0, mnemonic: mnemonic.to_owned(), operands: operands.to_owned(), target }))
 }
 
 /// A Rust name without its hash and without the marks of its crates.
 fn readable(name: &str) -> String {
     format!("{:#}", rustc_demangle::demangle(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_instruction_is_as_long_as_its_first_halfword_says() {
+        // movs r0, #0; bl; udf; ldrd: little-endian halfwords.
+        let text: [(u32, &[u8]); 1] =
+            [(0x100, &[0x00, 0x20, 0x12, 0xf0, 0xff, 0xfb, 0x00, 0xde, 0xd0, 0xe9, 0x00, 0x12])];
+        assert_eq!(
+            [0x100, 0x102, 0x106, 0x108, 0xfe, 0x10c].map(|at| size(&text, at)),
+            [Some(2), Some(4), Some(2), Some(4), None, None]
+        );
+    }
+
+    #[test]
+    fn a_line_of_the_listing_is_an_instruction_a_constant_or_a_heading() {
+        let read = |line: &str| instruction(line).map(|(at, i)| (at, i.mnemonic, i.operands, i.target));
+        let of =
+            |at, mnemonic: &str, operands: &str, target| Some((at, mnemonic.to_owned(), operands.to_owned(), target));
+        assert_eq!(
+            read(" 8000188:      \tbl\t0x801298a <__pre_init>  @ imm = #75774"),
+            of(0x0800_0188, "bl", "0x801298a <__pre_init>", Some(0x0801_298a))
+        );
+        assert_eq!(
+            read(" 80001f8:\tcbz\tr0, 0x8000212 <f+0x4> @ imm = #2"),
+            of(0x0800_01f8, "cbz", "r0, 0x8000212 <f+0x4>", Some(0x0800_0212))
+        );
+        assert_eq!(read(" 800018c: \tldr\tr0, [pc, #56]  @ 0x80001c8"), of(0x0800_018c, "ldr", "r0, [pc, #56]", None));
+        assert_eq!(read(" 80001c8:\tb4 c0 01 08\t.word\t0x0801c0b4"), None);
+        assert_eq!(read(" 80001c8:\tb4\t.byte\t0xb4"), None);
+        assert_eq!(read(" 80001c8:\t.word\t0x0801c0b4"), None);
+        assert_eq!(read(" 80001c8:\t<unknown>"), None);
+        assert_eq!(read("080001e0 <palpate_pass>:"), None);
+    }
 }

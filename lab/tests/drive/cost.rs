@@ -2,11 +2,25 @@
 
 use palpate_lab::profile::{drive_image, interrupt_costs, panics_reached_from};
 
-use super::rig::image;
+use palpate_lab::tools::{self, Leave, MissingTools};
+
+use super::rig;
+
+/// Whether image, emulator and disassembler are there; else a word, and an end where they are required.
+fn ready() -> bool {
+    match tools::for_profiling(Leave::Look) {
+        Ok(_) => rig::image().is_some(),
+        Err(MissingTools(missing)) => {
+            assert!(std::env::var_os("PALPATE_DEVICE").is_none(), "{missing:?}");
+            eprintln!("left out: {missing:?}");
+            false
+        }
+    }
+}
 
 #[test]
 fn no_panic_can_be_reached_from_either_interrupt_of_the_drive() {
-    if image().is_none() {
+    if !ready() {
         return;
     }
     let image = drive_image().unwrap_or_else(|error| panic!("{error:#}"));
@@ -25,7 +39,7 @@ const MOST: u32 = 15_625;
 
 #[test]
 fn the_longest_tick_is_counted_and_leaves_room_for_a_current_loop() {
-    if image().is_none() {
+    if !ready() {
         return;
     }
     for cost in interrupt_costs().unwrap_or_else(|error| panic!("{error:#}")) {
@@ -42,7 +56,7 @@ const MEMORY: u64 = 128 * 1024;
 #[test]
 fn data_and_the_deepest_stack_of_all_that_may_interrupt_each_other_fit_the_memory() {
     use object::{Object as _, ObjectSection as _};
-    if image().is_none() {
+    if !ready() {
         return;
     }
     let image = drive_image().unwrap_or_else(|error| panic!("{error:#}"));

@@ -1,5 +1,7 @@
 //! `cargo verify`: every check there is, with its own set-up. `--strict` fails where a check had to be left out.
 
+mod tree;
+
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
@@ -47,7 +49,9 @@ fn verify(strict: bool) -> anyhow::Result<bool> {
     let rustfmt = ready("formatting", told(tools::component("rustfmt", "fmt", Leave::Install)));
     let clippy = ready("lints", told(tools::component("clippy", "clippy", Leave::Install)));
     let target = ready("the device's image", told(tools::cross_target(Leave::Install)));
-    let device = target & ready("the device's tests", told(tools::qemu(Leave::Install).map(drop)));
+    let qemu = ready("the device's tests", told(tools::qemu(Leave::Install).map(drop)));
+    let disassembler = ready("what the device's code costs", told(tools::disassembler(Leave::Install).map(drop)));
+    let device = target & qemu & disassembler;
     let folder = project()?;
     for (what, packages) in [
         ("the tests in MuJoCo, Drake and Exudyn", &python::SIMULATORS),
@@ -57,6 +61,11 @@ fn verify(strict: bool) -> anyhow::Result<bool> {
         ready(what, found.map(drop).map_err(|missing| missing.to_string()));
     }
     let mut failed = Vec::new();
+    println!("\n== source tree: no symbolic link, no path of a machine");
+    if let Err(error) = tree::check(&folder) {
+        println!("{error:#}\n== source tree: FAILED");
+        failed.push("source tree");
+    }
     for check in checks(rustfmt, clippy, target, device) {
         println!("\n== {}: cargo {}", check.name, check.arguments.join(" "));
         let since = Instant::now();
