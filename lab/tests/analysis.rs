@@ -1,8 +1,8 @@
 //! The parts of the diagnosis, each against a truth from elsewhere: closed forms, other algorithms, chance itself.
 
-use palpate_lab::diagnose::chance::Null;
-use palpate_lab::diagnose::lens::Lens;
-use palpate_lab::diagnose::unround::unround;
+use palpate_lab::diagnose::bootstrap::null_distribution::Null;
+use palpate_lab::diagnose::signals::dequantize::unround;
+use palpate_lab::diagnose::signals::derivative_filter::Lens;
 use palpate_lab::effects::{Reading, gate, ramp};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;

@@ -1,13 +1,13 @@
 //! The experiment that would tell two explanations apart.
 
-use palpate_lab::diagnose::answer::Experiment;
+use palpate_lab::diagnose::bootstrap::problem::Study;
+use palpate_lab::diagnose::bootstrap::sampler::Studio;
+use palpate_lab::diagnose::estimation::whitener::{Floor, Whitener, tracks};
 use palpate_lab::diagnose::experiment::{DECIDES, Worth, design, separated_by};
-use palpate_lab::diagnose::lens::Lens;
 use palpate_lab::diagnose::model::{Model, Term};
-use palpate_lab::diagnose::raw::Raw;
-use palpate_lab::diagnose::study::Study;
-use palpate_lab::diagnose::twin::Studio;
-use palpate_lab::diagnose::whiten::{Floor, Whitener, tracks};
+use palpate_lab::diagnose::report::diagnosis::Experiment;
+use palpate_lab::diagnose::signals::derivative_filter::Lens;
+use palpate_lab::diagnose::signals::uniform_trial::Raw;
 use palpate_lab::effects::find;
 use palpate_lab::rig::Rig;
 use palpate_lab::sensors::Figures;

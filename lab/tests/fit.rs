@@ -1,6 +1,6 @@
 //! The search for the best values: where it begins is not where it ends.
 
-use palpate_lab::diagnose::fit::{self, Data};
+use palpate_lab::diagnose::estimation::levenberg_marquardt::{self, Data};
 use palpate_lab::diagnose::model::index;
 use palpate_lab::diagnose::{sensed, study};
 use palpate_lab::rig::Rig;
@@ -24,7 +24,8 @@ fn a_search_that_begins_with_a_clock_at_its_bound_moves() {
     let study = study(&rig, "rig.toml", sensed(&rig, "rig.toml", &[recording]).unwrap(), 1).unwrap();
     let whitener = study.even_floors();
     let data = Data { trials: &study.studio.trials, whitener: &whitener, rows: None };
-    let search = |start: &[f64]| fit::fit(&data, &study.nominal, start, &study.scene(&study.nominal, start));
+    let search =
+        |start: &[f64]| levenberg_marquardt::fit(&data, &study.nominal, start, &study.scene(&study.nominal, start));
     let best = search(&study.given);
     assert!((best.values[index::FORCE_TIMING].abs() * 400.0 - 0.25).abs() < 1e-9, "{best:?}");
     // Beside the best in K by so little that there is less to earn than the nine that the clock costs at its bound.

@@ -12,8 +12,8 @@ mod safe;
 mod signal;
 
 use answers::{explained, nano, no_mismatch, parameters, unknown, value};
-use palpate_lab::diagnose::answer::{Answer, Phase, Pictures, Verdict};
-use palpate_lab::diagnose::report;
+use palpate_lab::diagnose::report::diagnosis::{Answer, Phase, Pictures, Verdict};
+use palpate_lab::diagnose::report::html;
 use reading::{bytes, doubles, floats, prose};
 use signal::{Size, trace};
 
@@ -21,7 +21,7 @@ type Diagnosis = (Answer, Pictures);
 
 fn written((answer, pictures): &Diagnosis) -> String {
     let mut out = Vec::new();
-    report::write(answer, pictures, &mut out).expect("a vector takes everything");
+    html::write(answer, pictures, &mut out).expect("a vector takes everything");
     String::from_utf8(out).expect("a page is UTF-8")
 }
 

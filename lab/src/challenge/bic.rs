@@ -12,12 +12,12 @@ use palpate_cases::rivals::Finding;
 use rayon::prelude::*;
 
 use super::files::{self, Files};
-use crate::diagnose::fit::{self, Data};
-use crate::diagnose::fold;
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::estimation::levenberg_marquardt::{self, Data};
+use crate::diagnose::estimation::projection::Remainder;
+use crate::diagnose::estimation::whitener::Whitener;
 use crate::diagnose::model::Model;
-use crate::diagnose::score::Remainder;
-use crate::diagnose::study::Study;
-use crate::diagnose::whiten::Whitener;
+use crate::diagnose::selection::cross_validation;
 use crate::diagnose::{sensed, study};
 
 /// Candidates of a round that are fitted in full.
@@ -39,14 +39,15 @@ pub fn answer(folder: &Path) -> Result<Finding> {
     let (model, values) = select(&study, &whitener, first.clone());
     let named = model.terms[study.nominal.terms.len()..].iter().map(|term| term.name().to_owned()).collect();
     // In the channel in which refitted values leave the more over the sensors' noise, as the diagnosis has it.
-    let held =
-        |model: &Model, values: &[f64]| fold::held_out(&study, &whitener, model, values, &study.scene(model, values));
+    let held = |model: &Model, values: &[f64]| {
+        cross_validation::held_out(&study, &whitener, model, values, &study.scene(model, values))
+    };
     let (before, after) = (held(&study.nominal, &first), held(&model, &values));
     let effort = before.powers[1] > before.powers[0];
     Ok(Finding {
         named,
-        refitted: fold::rms(&study, &before.rests, effort),
-        held_out: fold::rms(&study, &after.rests, effort),
+        refitted: cross_validation::rms(&study, &before.rests, effort),
+        held_out: cross_validation::rms(&study, &after.rests, effort),
         unit: rig.coordinate.force_unit().to_owned(),
         seconds: start.elapsed().as_secs_f64(),
     })
@@ -67,7 +68,7 @@ fn select(study: &Study, whitener: &Whitener, first: Vec<f64>) -> (Model, Vec<f6
         let fits = scores.par_iter().map(|score| {
             let more = model.with(score.term);
             let start: Vec<f64> = values.iter().chain(&score.values).copied().collect();
-            let fit = fit::fit(&data, &more, &start, &scene);
+            let fit = levenberg_marquardt::fit(&data, &more, &start, &scene);
             (criterion(&data, &more, &fit.values), more, fit.values)
         });
         let Some((found, more, fitted)) = fits.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };

@@ -7,6 +7,7 @@
 mod channel;
 mod clock;
 mod drive;
+mod finding;
 mod motion;
 mod note;
 mod step;
@@ -16,10 +17,10 @@ mod unit;
 mod view;
 mod words;
 
-use super::answer::Finding;
-use super::raw::Raw;
+use crate::diagnose::signals::uniform_trial::Raw;
 use crate::recording::Recording;
 use crate::rig::Rig;
+pub use finding::Finding;
 use note::gather;
 use view::View;
 

@@ -3,12 +3,14 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, bail, ensure};
+use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::answer::{Answer, Experiment, Pictures};
-use super::{diagnose, report};
+use super::diagnose;
+use crate::diagnose::experiment::Experiment;
+use crate::diagnose::report::diagnosis::Answer;
+use crate::diagnose::report::html;
 use crate::error::{InputError, UsageError};
 use crate::outfile::OutFile;
 use crate::recording::Recording;
@@ -72,7 +74,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         commit(file, found.improved.to_toml().as_bytes())?;
     }
     if let Some(mut file) = page {
-        report::write(&found.answer, &found.pictures, &mut file).map_err(|error| file.fault(&error))?;
+        html::write(&found.answer, &found.pictures, &mut file).map_err(|error| file.fault(&error))?;
         file.commit()?;
     }
     match (experiment, &found.pictures.experiment) {
@@ -157,38 +159,4 @@ fn trajectory(next: &Experiment, rig: &Rig) -> String {
         text += &format!("{time},{reference}\n");
     }
     text
-}
-
-/// What `diagnose` found.
-pub struct Found {
-    /// As JSON.
-    pub answer: Answer,
-    /// For the page.
-    pub pictures: Pictures,
-    /// The improved rig.
-    pub improved: Rig,
-}
-
-/// Fewest rows of a trial: below them no filter has settled.
-const FEWEST_ROWS: usize = 32;
-
-/// Refuses trials that nothing can be told of.
-///
-/// # Errors
-/// No trial, a trial of a few rows, or none of the rig's channels in them.
-pub fn ensure_usable(rig: &Rig, trials: &[Recording], origin: &str) -> Result<()> {
-    ensure!(!trials.is_empty(), UsageError::new("TRIAL.csv", "none", "at least one recording"));
-    if let Some(short) = trials.iter().find(|trial| trial.time.len() < FEWEST_ROWS) {
-        let found = format!("{} rows", short.time.len());
-        let expected = format!("at least {FEWEST_ROWS}, and some hundreds to tell much");
-        bail!(InputError::new(&short.name, found, expected));
-    }
-    let has = |pick: &dyn Fn(&Recording) -> bool| trials.iter().all(pick);
-    let force = rig.contact.is_some() && has(&|trial| trial.force.is_some());
-    let effort = rig.drive.is_some() && has(&|trial| trial.effort.is_some());
-    if !force && !effort {
-        let found = "no [contact] with a force recorded in every trial, and no [drive] with an effort";
-        bail!(InputError::new(origin, found, "at least one channel that the rig predicts and every trial holds"));
-    }
-    Ok(())
 }

@@ -14,11 +14,11 @@ mod room;
 mod words;
 
 use rayon::prelude::*;
+use serde::Serialize;
 
-use super::answer::Experiment;
-use super::model::Model;
-use super::study::Study;
-use super::whiten::Whitener;
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::estimation::whitener::Whitener;
+use crate::diagnose::model::Model;
 use bench::Bench;
 use claim::Claim;
 use course::Course;
@@ -27,6 +27,17 @@ pub use pair::separated_by;
 use pairs::Pairs;
 use rest::Rest;
 use room::Room;
+
+/// A trajectory to run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Experiment {
+    /// What it is and what it would tell.
+    pub text: String,
+    /// Seconds.
+    pub time: Vec<f64>,
+    /// Commanded position.
+    pub reference: Vec<f64>,
+}
 
 /// Energy from which two models count as told apart: chance leaves less but once in two thousand times.
 pub const DECIDES: f64 = 12.0;

@@ -1,90 +1,17 @@
 //! What the simulation says of a recorded motion: the nominal rig and the effects added to it.
 
 mod balance;
+pub mod contact_phase;
+pub mod excitation;
+pub mod residual;
+pub mod term;
 
-use super::track::{Track, Trial};
+use crate::diagnose::signals::filtered_trial::{Track, Trial};
 use crate::effects::contact_law::{Active, Along};
-use crate::effects::{Effect, Parameter, Place, Reading};
+use crate::effects::{Effect, Place, Reading};
 use crate::rig::Contact;
-
-/// An effect in a model.
-#[derive(Clone, Copy)]
-pub struct Term {
-    /// What acts.
-    pub effect: &'static dyn Effect,
-    /// By which law.
-    pub form: usize,
-}
-
-impl Term {
-    /// Its parameters.
-    #[must_use]
-    pub fn parameters(&self) -> &'static [Parameter] {
-        self.effect.card().forms[self.form].parameters
-    }
-
-    /// See [`crate::effects::Effect::refines`].
-    #[must_use]
-    pub fn refines(&self) -> bool {
-        self.effect.refines(self.form)
-    }
-
-    /// Energy that its free parameters have to take to be worth having.
-    #[must_use]
-    pub fn price(&self) -> f64 {
-        4.0 * self.parameters().iter().filter(|parameter| !parameter.fixed).count() as f64
-    }
-
-    /// Its parameters and, after them, for each trial but the first those that each trial has for itself.
-    #[must_use]
-    pub fn all_parameters(&self, trials: usize) -> Vec<Parameter> {
-        let each = self.parameters().iter().filter(|parameter| parameter.each_trial);
-        let more = (1..trials).flat_map(|_| each.clone());
-        self.parameters().iter().chain(more).copied().collect()
-    }
-
-    /// Values in the layout of [`Term::all_parameters`] from those of its own parameters: alike in every trial.
-    #[must_use]
-    pub fn spread(&self, own: &[f64], trials: usize) -> Vec<f64> {
-        let each = self.parameters().iter().zip(own).filter(|(parameter, _)| parameter.each_trial);
-        let more = (1..trials).flat_map(|_| each.clone().map(|(_, value)| *value));
-        own.iter().copied().chain(more).collect()
-    }
-
-    /// Values of its own parameters in trial `trial`, from those in the layout of [`Term::all_parameters`].
-    #[must_use]
-    pub fn in_trial(&self, all: &[f64], trial: usize) -> Vec<f64> {
-        let parameters = self.parameters();
-        let each = parameters.iter().filter(|parameter| parameter.each_trial).count();
-        let mut next = parameters.len() + trial.saturating_sub(1) * each;
-        let mut pick = |at: usize| {
-            if trial == 0 || !parameters[at].each_trial {
-                return all[at];
-            }
-            next += 1;
-            all[next - 1]
-        };
-        (0..parameters.len()).map(&mut pick).collect()
-    }
-
-    /// Whether both are the same law of the same effect.
-    #[must_use]
-    pub fn is(&self, other: &Self) -> bool {
-        self.name() == other.name() && self.form == other.form
-    }
-
-    /// Its name.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        self.effect.card().name
-    }
-}
-
-impl std::fmt::Debug for Term {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}/{}", self.name(), self.effect.card().forms[self.form].name)
-    }
-}
+pub use residual::{Channels, Rest};
+pub use term::Term;
 
 /// Index of the nominal values in a parameter vector.
 pub mod index {
@@ -123,29 +50,6 @@ pub struct Model {
     pub shifts: Vec<f64>,
     /// Effects.
     pub terms: Vec<Term>,
-}
-
-/// What the model leaves of one trial.
-#[derive(Debug, Clone, Default)]
-pub struct Rest {
-    /// Measured minus predicted force.
-    pub force: Vec<f64>,
-    /// What is left of the drive's balance.
-    pub effort: Vec<f64>,
-}
-
-/// Which channels are asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Channels {
-    /// The force reading.
-    pub force: bool,
-    /// The drive's balance.
-    pub effort: bool,
-}
-
-impl Channels {
-    /// Both.
-    pub const BOTH: Self = Self { force: true, effort: true };
 }
 
 impl Model {

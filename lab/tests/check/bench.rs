@@ -1,7 +1,7 @@
 //! A bench in code: a course of the tool, the forces that follow from it, and what may go wrong with the columns.
 
 use palpate_lab::diagnose::check::check;
-use palpate_lab::diagnose::raw::Raw;
+use palpate_lab::diagnose::signals::uniform_trial::Raw;
 use palpate_lab::recording::Recording;
 use palpate_lab::rig::{Contact, Coordinate, Drive, Rig};
 use palpate_lab::sensors::Figures;

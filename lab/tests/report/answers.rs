@@ -1,7 +1,7 @@
 //! A diagnosis of every kind.
 
 use crate::signal::{Size, maps, trace};
-use palpate_lab::diagnose::answer::*;
+use palpate_lab::diagnose::report::diagnosis::*;
 
 pub const CHECKED: [&str; 8] = [
     "hunt_crossley_damping",

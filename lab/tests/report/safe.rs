@@ -3,8 +3,8 @@
 use crate::answers::explained;
 use crate::full::Full;
 use crate::{Diagnosis, every_kind, written};
-use palpate_lab::diagnose::answer::{Map, Pictures};
-use palpate_lab::diagnose::report;
+use palpate_lab::diagnose::report::diagnosis::{Map, Pictures};
+use palpate_lab::diagnose::report::html;
 use std::io::ErrorKind;
 
 #[test]
@@ -119,7 +119,7 @@ fn vectors_of_unequal_length_are_refused() {
         let (answer, mut pictures) = explained();
         spoil(&mut pictures);
         let mut out = Vec::new();
-        let error = report::write(&answer, &pictures, &mut out).expect_err("a vector is short");
+        let error = html::write(&answer, &pictures, &mut out).expect_err("a vector is short");
         assert_eq!(error.kind(), ErrorKind::InvalidInput);
         assert!(error.to_string().contains(named) && out.is_empty(), "{error}");
     };
@@ -134,8 +134,8 @@ fn a_full_disk_is_reported_wherever_it_strikes() {
     let (answer, pictures) = explained();
     let whole = written(&(answer.clone(), pictures.clone())).len();
     for room in [0, 10_000, whole / 2, whole - 1] {
-        let error = report::write(&answer, &pictures, &mut Full(room)).expect_err("it does not fit");
+        let error = html::write(&answer, &pictures, &mut Full(room)).expect_err("it does not fit");
         assert_eq!(error.kind(), ErrorKind::StorageFull);
     }
-    report::write(&answer, &pictures, &mut Full(whole)).expect("it fits");
+    html::write(&answer, &pictures, &mut Full(whole)).expect("it fits");
 }

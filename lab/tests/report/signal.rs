@@ -1,6 +1,6 @@
 //! Synthetic signals: a tool that presses into something whose damping grows with depth.
 
-use palpate_lab::diagnose::answer::{Map, Phase, Trace};
+use palpate_lab::diagnose::report::diagnosis::{Map, Phase, Trace};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

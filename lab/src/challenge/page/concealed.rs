@@ -9,8 +9,8 @@ use palpate_cases::{Source, What, Wish, draw};
 use super::super::files::{self, Files};
 use super::super::row::Row;
 use super::super::score::{Challenge, median};
-use crate::diagnose::answer::Trace;
 use crate::diagnose::diagnose;
+use crate::diagnose::report::diagnosis::Trace;
 
 /// Rows of the picture.
 const ROWS: usize = 900;

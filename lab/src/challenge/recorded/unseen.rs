@@ -6,14 +6,14 @@
 
 use anyhow::{Context as _, Result};
 
-use crate::diagnose::lens::Lens;
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::bootstrap::sampler::Studio;
+use crate::diagnose::linalg::energy;
 use crate::diagnose::model::{Channels, Rest, index};
-use crate::diagnose::product::energy;
-use crate::diagnose::raw::Raw;
-use crate::diagnose::sharpness::lenses;
-use crate::diagnose::study::Study;
-use crate::diagnose::track::Track;
-use crate::diagnose::twin::Studio;
+use crate::diagnose::signals::bandwidth::lenses;
+use crate::diagnose::signals::derivative_filter::Lens;
+use crate::diagnose::signals::filtered_trial::Track;
+use crate::diagnose::signals::uniform_trial::Raw;
 use crate::diagnose::{sensed, study};
 use crate::recording::Recording;
 use crate::rig::Rig;

@@ -1,6 +1,6 @@
 //! What one check says of one trial, and how the trials are put together.
 
-use super::super::answer::Finding;
+use super::finding::Finding;
 use crate::recording::Recording;
 
 /// What one check says of one trial.

@@ -1,7 +1,7 @@
 //! A trial as the checks see it: its rows, and its motion smoothed until the speed stands out of the noise.
 
-use super::super::lens::Lens;
-use super::super::raw::Raw;
+use crate::diagnose::signals::derivative_filter::Lens;
+use crate::diagnose::signals::uniform_trial::Raw;
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
 

@@ -1,12 +1,12 @@
 //! A recording that was never made: what a model would show of a motion.
 
-use super::super::lens::Lens;
-use super::super::model::index;
-use super::super::study::Study;
-use super::super::track::{Track, Trial};
-use super::super::whiten::{Floor, Whitener};
 use super::claim::Claim;
 use super::course::Course;
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::estimation::whitener::{Floor, Whitener};
+use crate::diagnose::model::index;
+use crate::diagnose::signals::derivative_filter::Lens;
+use crate::diagnose::signals::filtered_trial::{Track, Trial};
 
 /// Where motions are tried.
 pub struct Bench<'a> {

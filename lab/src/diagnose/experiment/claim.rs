@@ -1,7 +1,7 @@
 //! A model and its values, as one side of an argument.
 
-use super::super::model::{Model, index};
-use super::super::study::Study;
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::model::{Model, index};
 use crate::effects::Scene;
 
 /// A model with its values, as of the first trial alone.

@@ -1,6 +1,6 @@
 //! What tells one effect from another.
 
-use super::super::model::Term;
+use crate::diagnose::model::Term;
 use crate::effects::Place;
 
 /// Two effects and the motion, or the sensor, that separates them.

@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::super::study::Study;
-use super::super::track::Trial;
-use super::super::whiten::Whitener;
 use super::Trying;
 use super::bench::Bench;
 use super::claim::Claim;
 use super::library::Motion;
 use super::rest::Rest;
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::estimation::whitener::Whitener;
+use crate::diagnose::signals::filtered_trial::Trial;
 
 /// The answer and its rivals, each on a bench where it is the truth.
 pub struct Pairs<'a> {

@@ -1,11 +1,11 @@
 //! What a wrong model leaves of what the right one shows.
 
-use super::super::fit::{self, Data};
-use super::super::model::Channels;
-use super::super::track::{Track, Trial};
-use super::super::whiten::{Floor, Whitener};
 use super::bench::Bench;
 use super::claim::Claim;
+use crate::diagnose::estimation::levenberg_marquardt::{self, Data};
+use crate::diagnose::estimation::whitener::{Floor, Whitener};
+use crate::diagnose::model::Channels;
+use crate::diagnose::signals::filtered_trial::{Track, Trial};
 
 /// What a wrong model leaves of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ impl Bench<'_> {
         let data = Data { trials, whitener: &whitener, rows: None };
         // From its own values and from the answer's: what looks told apart may be a search that got lost.
         let starts = [rival.values.clone(), rival.about(self.answer())];
-        let fits = starts.iter().map(|start| fit::fit(&data, &rival.model, start, &rival.scene));
+        let fits = starts.iter().map(|start| levenberg_marquardt::fit(&data, &rival.model, start, &rival.scene));
         let best = fits.min_by(|a, b| a.energy.total_cmp(&b.energy));
         let Some(rival_fit) = best else { return Rest { energy: 0.0, force: 0.0, effort: 0.0 } };
         let rests: Vec<_> =

@@ -1,9 +1,9 @@
 //! What the recordings did, within which an experiment stays.
 
-use super::super::lens::Lens;
-use super::super::model::{Model, index};
-use super::super::study::Study;
-use super::super::track::Track;
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::model::{Model, index};
+use crate::diagnose::signals::derivative_filter::Lens;
+use crate::diagnose::signals::filtered_trial::Track;
 
 /// What the recordings did: an experiment that stays within it asks nothing of the rig that it has not borne.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,11 @@
 //! What an experiment is and what it would show, in plain words.
 
-use super::super::model::{Model, Term};
-use super::super::study::Study;
 use super::bench::Bench;
 use super::pair::{is_equivalent, separated_by};
 use super::rest::Rest;
 use super::{DECIDES, Trying, Worth};
+use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::model::{Model, Term};
 use crate::page::quantity::{rounded, seconds};
 
 /// Rates below this one are not set against that of the recordings: a ratio of two nothings.

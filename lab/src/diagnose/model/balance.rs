@@ -2,7 +2,7 @@
 
 use super::Model;
 use super::index;
-use crate::diagnose::track::Track;
+use crate::diagnose::signals::filtered_trial::Track;
 use crate::effects::{Memory, Place, Push, Side, Stage};
 use crate::rig::Drive;
 

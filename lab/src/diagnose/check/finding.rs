@@ -1,0 +1,14 @@
+//! What a recording shows before anything is fitted, or what limits an answer.
+
+use serde::Serialize;
+
+/// Something to know.
+#[derive(Debug, Clone, Serialize)]
+pub struct Finding {
+    /// Whether it casts doubt on the answer.
+    pub grave: bool,
+    /// File, channel or time it is about; empty where it is about all.
+    pub place: String,
+    /// The finding and what to do about it.
+    pub text: String,
+}

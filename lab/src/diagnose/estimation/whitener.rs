@@ -1,0 +1,264 @@
+//! What a residual is worth: scaled by the floor of its moment, freed of its memory.
+//!
+//! The noise that the sensors leave in a residual differs from moment to moment (touching, turning) and remembers itself
+//! over several rows, for every channel was smoothed. Divided by the floor of its moment and passed through the predictor
+//! error filter that makes the floor white, a residual counts for what it is worth: 7500 coarse rows for a hundred.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::diagnose::linalg::{dot, energy};
+use crate::diagnose::model::Rest;
+use crate::diagnose::signals::filtered_trial::{Track, Trial};
+
+/// Order of the predictor.
+const ORDER: usize = 8;
+
+/// Power over the noise's up to which a residual tells its own memory.
+const OWN: f64 = 2.0;
+
+/// The floor of one channel over all trials.
+#[derive(Debug, Clone)]
+pub struct Floor {
+    /// Deviation of what noise leaves, row by row, a vector a trial.
+    pub deviation: Vec<Vec<f64>>,
+    /// Weights of the rows before in the predictor error filter; the row itself counts one.
+    predictor: Vec<f64>,
+    /// Deviation of the predictor's error.
+    scale: f64,
+    /// Rows of each trial that count.
+    pub rows: Vec<Vec<usize>>,
+    /// Covariance of noise alone over the first lags, in squares of its deviation.
+    noise: [f64; ORDER + 1],
+}
+
+/// The floors of both channels and the rows that count.
+#[derive(Debug, Clone)]
+pub struct Whitener {
+    /// Of the force reading.
+    pub force: Option<Floor>,
+    /// Of the drive's balance.
+    pub effort: Option<Floor>,
+}
+
+/// Rows of both channels, one after the other: force of all trials, then effort.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Row {
+    /// Trial.
+    pub trial: usize,
+    /// Row in it.
+    pub row: usize,
+    /// Whether of the effort channel.
+    pub effort: bool,
+}
+
+impl Floor {
+    /// A floor that is the same everywhere and has no memory.
+    #[must_use]
+    pub fn even(tracks: &[&Track], deviation: f64) -> Self {
+        let deviation = tracks.iter().map(|track| vec![deviation; track.len()]).collect();
+        Self { deviation, predictor: Vec::new(), scale: 1.0, rows: rows(tracks), noise: [0.0; ORDER + 1] }
+    }
+
+    /// The floor that `samples`, residuals of noise alone, leave: a vector of trials each.
+    #[must_use]
+    pub fn of(tracks: &[&Track], samples: &[Vec<Vec<f64>>]) -> Self {
+        let mut deviation: Vec<Vec<f64>> =
+            (0..tracks.len()).map(|trial| spread(tracks[trial], samples, trial)).collect();
+        // No moment is known better than a fraction of the rest of them.
+        let mut all: Vec<f64> = deviation.iter().zip(tracks).flat_map(|(d, t)| seen(d, t)).collect();
+        // A stretch without any noise at all, a sensor that is off, does not tell what is typical.
+        all.retain(|value| *value > 0.0);
+        all.sort_unstable_by(f64::total_cmp);
+        let typical = all.get(all.len() / 2).copied().unwrap_or(1.0);
+        let least = (0.3 * typical).max(f64::MIN_POSITIVE);
+        deviation.iter_mut().flatten().for_each(|value| *value = if *value > least { *value } else { least });
+        let mut floor =
+            Self { deviation, predictor: Vec::new(), scale: 1.0, rows: rows(tracks), noise: [0.0; ORDER + 1] };
+        for sample in samples {
+            let own = floor.covariance(sample.iter());
+            floor.noise.iter_mut().zip(own).for_each(|(sum, own)| *sum += own / samples.len() as f64);
+        }
+        floor
+    }
+
+    /// Covariance over the first lags of residuals, a vector a trial, in squares of the floor's deviation.
+    fn covariance<'a>(&self, residuals: impl Iterator<Item = &'a Vec<f64>>) -> [f64; ORDER + 1] {
+        let mut covariance = [0.0; ORDER + 1];
+        let mut count = 0.0f64;
+        for (trial, values) in residuals.enumerate() {
+            let scaled: Vec<f64> = values.iter().zip(&self.deviation[trial]).map(|(v, d)| v / d).collect();
+            for &at in &self.rows[trial] {
+                count += 1.0;
+                for (lag, sum) in covariance.iter_mut().enumerate() {
+                    *sum += scaled[at] * scaled[at - lag];
+                }
+            }
+        }
+        covariance.map(|sum| sum / count.max(1.0))
+    }
+
+    /// The predictor by the Yule-Walker equations, from residuals of a recording or a twin.
+    ///
+    /// A residual that is about as large as noise tells its own memory, and so is worth what it is worth whatever its
+    /// colour. One that is far larger is no noise: what is left out would pass for memory and be taken off. There the
+    /// memory is that of the twins.
+    fn learn<'a>(&mut self, residuals: impl Iterator<Item = &'a Vec<f64>>) {
+        let own = self.covariance(residuals);
+        if own[0] <= 0.0 || !own[0].is_finite() {
+            return;
+        }
+        let share = if self.noise[0] > 0.0 { (OWN * self.noise[0] / own[0]).min(1.0).powi(2) } else { 1.0 };
+        let mix = |lag: usize| {
+            let noise = if self.noise[0] > 0.0 { self.noise[lag] / self.noise[0] } else { 0.0 };
+            share * own[lag] / own[0] + (1.0 - share) * noise
+        };
+        let covariance: [f64; ORDER + 1] = std::array::from_fn(mix);
+        // A thousandth of white noise beside: no spectrum is known to be empty anywhere.
+        let matrix = DMatrix::from_fn(ORDER, ORDER, |i, j| covariance[i.abs_diff(j)] + if i == j { 1e-3 } else { 0.0 });
+        let right = DVector::from_fn(ORDER, |i, _| covariance[i + 1]);
+        let Some(solved) = matrix.cholesky().map(|factors| factors.solve(&right)) else { return };
+        self.predictor = solved.iter().copied().collect();
+        let weight = |k: usize| if k == 0 { 1.0 } else { -self.predictor[k - 1] };
+        let mut energy = 0.0;
+        for i in 0..=ORDER {
+            for j in 0..=ORDER {
+                energy += weight(i) * weight(j) * covariance[i.abs_diff(j)];
+            }
+        }
+        // In the units of the smaller of the two: a residual beyond noise is to count for more than noise.
+        let size = if self.noise[0] > 0.0 { own[0].min(OWN * self.noise[0]) } else { own[0] };
+        self.scale = (energy * size).max(f64::MIN_POSITIVE).sqrt();
+    }
+
+    /// Whitened `values` of a trial, on those rows that count: before each of them all rows are there that the predictor
+    /// asks for.
+    fn white<'a>(&'a self, trial: usize, values: &[f64]) -> impl Iterator<Item = f64> + use<'a> {
+        let scaled: Vec<f64> = values.iter().zip(&self.deviation[trial]).map(|(v, d)| v / d).collect();
+        let backwards: Vec<f64> = self.predictor.iter().rev().copied().collect();
+        let ahead = move |at: &usize| {
+            let expected = dot(&backwards, &scaled[at - backwards.len()..*at]);
+            (scaled[*at] - expected) / self.scale
+        };
+        self.rows[trial].iter().map(ahead)
+    }
+}
+
+/// Deviation over the samples and a few rows either side.
+fn spread(track: &Track, samples: &[Vec<Vec<f64>>], trial: usize) -> Vec<f64> {
+    let rows = track.len();
+    let mut energy = vec![0.0; rows + 1];
+    for at in 0..rows {
+        let square: f64 = samples.iter().map(|sample| sample[trial][at] * sample[trial][at]).sum();
+        energy[at + 1] = energy[at] + square / samples.len() as f64;
+    }
+    (0..rows)
+        .map(|at| {
+            let (from, to) = (at.saturating_sub(2), (at + 3).min(rows));
+            ((energy[to] - energy[from]) / (to - from) as f64).max(0.0).sqrt()
+        })
+        .collect()
+}
+
+fn seen(values: &[f64], track: &Track) -> Vec<f64> {
+    values.iter().zip(&track.seen).filter(|(_, seen)| **seen).map(|(value, _)| *value).collect()
+}
+
+/// Rows that were seen whole together with those before them that the predictor asks for.
+fn rows(tracks: &[&Track]) -> Vec<Vec<usize>> {
+    let whole = |track: &&Track| {
+        (ORDER..track.len()).filter(|at| track.seen[at - ORDER..=*at].iter().all(|seen| *seen)).collect()
+    };
+    tracks.iter().map(whole).collect()
+}
+
+impl Whitener {
+    /// The same floors, the memory told by `rests`: that of a recording by its own residual, that of a twin by its own.
+    #[must_use]
+    pub fn learnt(&self, rests: &[Rest]) -> Self {
+        let mut fresh = self.clone();
+        if let Some(floor) = &mut fresh.force {
+            floor.learn(rests.iter().map(|rest| &rest.force));
+        }
+        if let Some(floor) = &mut fresh.effort {
+            floor.learn(rests.iter().map(|rest| &rest.effort));
+        }
+        fresh
+    }
+
+    /// The same, no moment's floor half as much again above that of `before`.
+    #[must_use]
+    pub fn no_worse_than(mut self, before: &Self) -> Self {
+        let channels = [(&mut self.force, &before.force), (&mut self.effort, &before.effort)];
+        for (floor, before) in
+            channels.into_iter().filter_map(|(floor, before)| Some((floor.as_mut()?, before.as_ref()?)))
+        {
+            let pairs = floor.deviation.iter_mut().flatten().zip(before.deviation.iter().flatten());
+            pairs.for_each(|(deviation, before)| *deviation = deviation.min(1.5 * before));
+        }
+        self
+    }
+
+    /// The same floors without their memory.
+    #[must_use]
+    pub fn forgetful(&self) -> Self {
+        let plain = |floor: &Option<Floor>| {
+            floor.as_ref().map(|floor| Floor { predictor: Vec::new(), scale: 1.0, ..floor.clone() })
+        };
+        Self { force: plain(&self.force), effort: plain(&self.effort) }
+    }
+
+    /// Where each whitened value comes from.
+    #[must_use]
+    pub fn origins(&self) -> Vec<Row> {
+        let channel = |effort: bool, floor: &Option<Floor>| {
+            let trials: Vec<Vec<usize>> = floor.iter().flat_map(|floor| floor.rows.clone()).collect();
+            trials
+                .into_iter()
+                .enumerate()
+                .flat_map(move |(trial, rows)| rows.into_iter().map(move |row| Row { trial, row, effort }))
+        };
+        channel(false, &self.force).chain(channel(true, &self.effort)).collect()
+    }
+
+    /// Rows of the force channel, which come first.
+    #[must_use]
+    pub fn force_rows(&self) -> usize {
+        self.force.iter().flat_map(|floor| &floor.rows).map(Vec::len).sum()
+    }
+
+    /// Mean squares of whitened residuals of all trials, of force and of effort.
+    #[must_use]
+    pub fn powers(&self, white: &[f64]) -> [f64; 2] {
+        let (force, effort) = white.split_at(self.force_rows());
+        [force, effort].map(|rows| energy(rows) / rows.len().max(1) as f64)
+    }
+
+    /// The whitened residuals of all trials; a channel that was not asked for is zero.
+    #[must_use]
+    pub fn white(&self, rests: &[Rest]) -> Vec<f64> {
+        let mut out = Vec::new();
+        let mut channel = |floor: &Floor, pick: &dyn Fn(&Rest) -> &Vec<f64>| {
+            for (trial, rows) in floor.rows.iter().enumerate() {
+                let values = pick(&rests[trial]);
+                if values.is_empty() {
+                    out.extend(std::iter::repeat_n(0.0, rows.len()));
+                } else {
+                    out.extend(floor.white(trial, values));
+                }
+            }
+        };
+        if let Some(floor) = &self.force {
+            channel(floor, &|rest| &rest.force);
+        }
+        if let Some(floor) = &self.effort {
+            channel(floor, &|rest| &rest.effort);
+        }
+        out
+    }
+}
+
+/// The tracks of a channel.
+#[must_use]
+pub fn tracks(trials: &[Trial], effort: bool) -> Vec<&Track> {
+    trials.iter().map(|trial| trial.track(effort)).collect()
+}

@@ -1,0 +1,221 @@
+//! The diagnosis as data: what the JSON holds, word for word, and what the page draws.
+
+use serde::Serialize;
+
+pub use crate::diagnose::check::Finding;
+pub use crate::diagnose::experiment::Experiment;
+pub use crate::diagnose::model::contact_phase::Phase;
+pub use crate::diagnose::selection::verdict::Verdict;
+
+/// The diagnosis, in the layout of `palpate.diagnosis/1`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Answer {
+    /// "palpate.diagnosis/1".
+    pub schema: &'static str,
+    /// What came out.
+    pub verdict: Verdict,
+    /// One sentence that a mechanic understands.
+    pub summary: String,
+    /// The physics left out, in order of evidence.
+    pub physics: Vec<Physics>,
+    /// What this data cannot tell from the answer.
+    pub rivals: Vec<Rival>,
+    /// Where simulation and recording differ.
+    pub locations: Vec<Location>,
+    /// How well the models fit, on data that no fit saw, in the channel that the mismatch is largest in.
+    pub fit: Goodness,
+    /// The same of each channel.
+    pub channels: Vec<Goodness>,
+    /// The nominal values, given and refitted.
+    pub nominal: Vec<Nominal>,
+    /// Every effect that was tried.
+    pub checked: Vec<&'static str>,
+    /// What the recordings themselves showed before anything was fitted, and what limits the answer.
+    pub findings: Vec<Finding>,
+}
+
+/// Physics left out.
+#[derive(Debug, Clone, Serialize)]
+pub struct Physics {
+    /// Name of the effect, or "unknown".
+    pub name: String,
+    /// "contact", "drive" or "sensor"; the channel where unknown.
+    pub acts_in: &'static str,
+    /// One plain sentence.
+    pub statement: String,
+    /// Law in the symbols of the parameters; empty where unknown.
+    pub equation: String,
+    /// Why one should believe it.
+    pub evidence: Evidence,
+    /// Its parameters.
+    pub parameters: Vec<Value>,
+    /// The library's regressor that carries it on the drive, where one does.
+    pub on_drive: Option<String>,
+}
+
+/// Why one should believe it.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Evidence {
+    /// Share of the held-out residual's energy that it takes away: 1 - (rms after / rms before)^2, in its channel.
+    pub held_out_gain: f64,
+    /// Probability that chance alone does as much somewhere among all effects, from twins.
+    pub p_value: f64,
+}
+
+/// A parameter and its interval.
+#[derive(Debug, Clone, Serialize)]
+pub struct Value {
+    /// "alpha".
+    pub name: String,
+    /// Estimate.
+    pub value: f64,
+    /// "N s/m^2".
+    pub unit: String,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+/// What this data cannot tell from the answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Rival {
+    /// Effects.
+    pub physics: Vec<String>,
+    /// As in [`Evidence`].
+    pub held_out_gain: f64,
+    /// The experiment that would tell them apart.
+    pub separated_by: String,
+}
+
+/// Where simulation and recording differ.
+#[derive(Debug, Clone, Serialize)]
+pub struct Location {
+    /// "force" or "effort".
+    pub channel: &'static str,
+    /// File name of the trial.
+    pub trial: String,
+    /// Since the first row of the trial, in its own time.
+    pub start_s: f64,
+    /// End of the stretch.
+    pub end_s: f64,
+    /// Phase of contact.
+    pub phase: Phase,
+    /// Share of its channel's energy above the floor that lies in this phase of this trial; start and end are the worst
+    /// stretch of it.
+    pub share: f64,
+    /// "x 6-9 mm, v > 0.05 m/s".
+    pub states: String,
+}
+
+/// How well the models fit, as root mean squares of the residual on data that no fit saw.
+#[derive(Debug, Clone, Serialize)]
+pub struct Goodness {
+    /// "force" or "effort".
+    pub channel: &'static str,
+    /// "N" or "N m".
+    pub unit: &'static str,
+    /// What the sensors leave.
+    pub noise_floor: f64,
+    /// The rig file as it stands, or the simulation handed over.
+    pub as_given: f64,
+    /// The same physics, values refitted.
+    pub refitted: f64,
+    /// With the named physics.
+    pub improved: f64,
+    /// Always true: nothing is quoted that was fitted.
+    pub held_out: bool,
+    /// Share of the energy above the floor, that refitted values leave, which the named physics takes away.
+    pub explained_share: f64,
+    /// Up to which frequency the channel was looked at, Hz.
+    pub band_hz: f64,
+}
+
+/// A nominal value.
+#[derive(Debug, Clone, Serialize)]
+pub struct Nominal {
+    /// Key of the rig file.
+    pub name: String,
+    /// "N/m".
+    pub unit: String,
+    /// In the rig file.
+    pub given: f64,
+    /// Refitted, with the named physics.
+    pub fitted: f64,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+/// What the page draws beside the answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Pictures {
+    /// Name of the rig.
+    pub rig: String,
+    /// "m" or "rad".
+    pub position_unit: &'static str,
+    /// "N" or "N m".
+    pub force_unit: &'static str,
+    /// A trial and channel each.
+    pub traces: Vec<Trace>,
+    /// Shares of the energy above the floor: by phase, depth, speed, time and frequency, before and after.
+    pub maps: Vec<Map>,
+    /// Evidence of every effect that was tried, the strongest first.
+    pub scores: Vec<Bar>,
+    /// The reference to run next, where there are rivals.
+    pub experiment: Option<Experiment>,
+}
+
+/// One channel of one trial over time. All vectors are of equal length.
+#[derive(Debug, Clone, Serialize)]
+pub struct Trace {
+    /// File name.
+    pub trial: String,
+    /// "force" or "effort".
+    pub channel: &'static str,
+    /// Seconds.
+    pub time: Vec<f64>,
+    /// Position of the tool relative to the fitted surface.
+    pub depth: Vec<f32>,
+    /// As measured, smoothed.
+    pub measured: Vec<f32>,
+    /// By the rig file as given, or the simulation handed over.
+    pub as_given: Vec<f32>,
+    /// By the same physics, values refitted.
+    pub refitted: Vec<f32>,
+    /// With the named physics.
+    pub improved: Vec<f32>,
+    /// Deviation of what the sensors leave at each moment.
+    pub floor: Vec<f32>,
+    /// Whether a row was seen whole; others are drawn as a gap.
+    pub seen: Vec<bool>,
+}
+
+/// Where the mismatch lies along one quantity.
+#[derive(Debug, Clone, Serialize)]
+pub struct Map {
+    /// "force" or "effort".
+    pub channel: &'static str,
+    /// "phase", "depth", "speed", "time", "frequency".
+    pub along: &'static str,
+    /// "m/s"; empty for the phase.
+    pub unit: String,
+    /// Label of each bin.
+    pub labels: Vec<String>,
+    /// Residual power over the floor's in the bin: one is noise. Refitted values.
+    pub before: Vec<f64>,
+    /// The same with the named physics.
+    pub after: Vec<f64>,
+    /// Share of the channel's energy above the floor that lies in the bin, before.
+    pub share: Vec<f64>,
+}
+
+/// Evidence of one effect.
+#[derive(Debug, Clone, Serialize)]
+pub struct Bar {
+    /// Name.
+    pub name: &'static str,
+    /// Share of the held-out residual energy above the floor that it takes alone; below zero where it makes things worse.
+    pub held_out_gain: f64,
+    /// Probability of as much by chance, for it alone.
+    pub p_value: f64,
+    /// "answer", "rival" or "".
+    pub role: &'static str,
+}

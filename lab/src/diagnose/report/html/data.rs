@@ -1,0 +1,132 @@
+//! The traces inside the page.
+
+use super::super::diagnosis::{Answer, Pictures, Trace};
+use super::trial::{Trial, compared, lines};
+use crate::page::{column, thin};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// Numbers that a row of a trace takes: a time counts twice.
+const COLUMNS: usize = 9;
+
+#[derive(Serialize)]
+struct Description<'a> {
+    position: &'a str,
+    force: &'a str,
+    lines: Vec<DescribedLine>,
+    compared: [&'a str; 2],
+    trials: Vec<DescribedTrial>,
+}
+
+#[derive(Serialize)]
+struct DescribedLine {
+    key: &'static str,
+    name: &'static str,
+}
+
+#[derive(Serialize)]
+struct DescribedTrial {
+    traces: Vec<DescribedTrace>,
+    /// The largest first, in seconds from the first row.
+    places: Vec<DescribedPlace>,
+}
+
+#[derive(Serialize)]
+struct DescribedTrace {
+    id: usize,
+    channel: &'static str,
+    rows: usize,
+}
+
+#[derive(Serialize)]
+struct DescribedPlace {
+    channel: &'static str,
+    start: f64,
+    end: f64,
+}
+
+/// Writes description and columns of every trial.
+pub(super) fn write(
+    answer: &Answer,
+    pictures: &Pictures,
+    trials: &[Trial<'_>],
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let description = Description {
+        position: pictures.position_unit,
+        force: pictures.force_unit,
+        lines: lines(answer).into_iter().map(|line| DescribedLine { key: line.key, name: line.name }).collect(),
+        compared: compared(answer),
+        trials: trials.iter().map(describe).collect(),
+    };
+    column::description(&description, out)?;
+    let budget = thin::budget(COLUMNS * pictures.traces.len());
+    for trial in trials {
+        for (id, trace) in &trial.traces {
+            columns(*id, trace, &shown(trial, trace, budget), out)?;
+        }
+    }
+    Ok(())
+}
+
+fn describe(trial: &Trial<'_>) -> DescribedTrial {
+    let traces = trial.traces.iter();
+    let places = trial.places.iter().filter(|place| place.start_s.is_finite() && place.end_s.is_finite());
+    DescribedTrial {
+        traces: traces.map(|(id, t)| DescribedTrace { id: *id, channel: t.channel, rows: t.time.len() }).collect(),
+        places: places
+            .map(|place| DescribedPlace { channel: place.channel, start: place.start_s, end: place.end_s })
+            .collect(),
+    }
+}
+
+/// The rows that look like all of them, and of the largest places as many as may be, for there the page looks closely.
+fn shown(trial: &Trial<'_>, trace: &Trace, budget: usize) -> Vec<usize> {
+    let mut certain = thin::edges(&trace.seen, budget / 8);
+    certain.extend(close_look(trial, trace, budget / 3));
+    let left = |model: &[f32]| -> Vec<f32> {
+        trace
+            .measured
+            .iter()
+            .zip(model)
+            .zip(&trace.seen)
+            .map(|((m, s), seen)| if *seen { m - s } else { f32::NAN })
+            .collect()
+    };
+    let residuals = [left(&trace.as_given), left(&trace.refitted), left(&trace.improved)];
+    let signals = [&trace.measured, &trace.depth, &residuals[0], &residuals[1], &residuals[2]];
+    thin::rows(trace.time.len(), &certain, &signals.map(Vec::as_slice), budget)
+}
+
+fn close_look(trial: &Trial<'_>, trace: &Trace, most: usize) -> Vec<usize> {
+    let mut rows = Vec::new();
+    for place in trial.places.iter().filter(|place| place.channel == trace.channel) {
+        let origin = trace.time[0];
+        // As much again to both sides, for the page opens a little wider than the place is.
+        let margin = place.end_s - place.start_s;
+        let from = trace.time.partition_point(|time| *time < origin + place.start_s - margin);
+        let until = trace.time.partition_point(|time| *time <= origin + place.end_s + margin);
+        let room = most.saturating_sub(rows.len());
+        let every = until.saturating_sub(from).div_ceil(room.max(1)).max(1);
+        rows.extend((from..until).step_by(every).take(room));
+    }
+    rows
+}
+
+fn columns(id: usize, trace: &Trace, rows: &[usize], out: &mut impl Write) -> io::Result<()> {
+    // The first row is the origin: it is what the places count from, and a clock since 1970 has no room for digits.
+    column::write(out, &format!("t{id}-time"), rows, |row| (trace.time[row] - trace.time[0]).to_le_bytes())?;
+    column::write(out, &format!("t{id}-seen"), rows, |row| [u8::from(trace.seen[row])])?;
+    let floats = [
+        ("depth", &trace.depth),
+        ("measured", &trace.measured),
+        ("given", &trace.as_given),
+        ("refitted", &trace.refitted),
+        ("improved", &trace.improved),
+        ("floor", &trace.floor),
+    ];
+    for (name, values) in floats {
+        column::write(out, &format!("t{id}-{name}"), rows, |row| values[row].to_le_bytes())?;
+    }
+    Ok(())
+}

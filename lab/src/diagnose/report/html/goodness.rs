@@ -1,0 +1,108 @@
+//! How well the models fit: four bars a channel.
+
+use super::super::diagnosis::{Answer, Goodness, Verdict};
+use super::axis::{Axis, across};
+use super::names_physics;
+use super::words::{channel, heading, multiple, share, times};
+use crate::page::quantity::{plain, rounded};
+use maud::{Markup, html};
+
+/// Height of a bar with its words, px.
+const ROW: usize = 46;
+
+/// One picture a channel.
+pub(super) fn section(answer: &Answer) -> Markup {
+    let channels: Vec<&Goodness> =
+        if answer.channels.is_empty() { vec![&answer.fit] } else { answer.channels.iter().collect() };
+    html! {
+        section #fit aria-labelledby="fit-title" {
+            h2 #fit-title { "How well it fits" }
+            p.fine {
+                "Each bar is the typical error (root mean square) of a simulation: as given, with the same physics and refitted values"
+                @if names_physics(answer) { ", and with the named physics added" }
+                ". Shorter is better, and the noise of the sensors is the floor. Every figure is from stretches of the recordings that no fit saw, so more numbers to turn do not by themselves shorten a bar."
+            }
+            div.pair { @for goodness in channels { (figure(answer, goodness)) } }
+        }
+    }
+}
+
+fn figure(answer: &Answer, goodness: &Goodness) -> Markup {
+    let bars = bars(answer, goodness);
+    let axis = Axis::over(bars.iter().map(|bar| bar.value));
+    let told: Vec<String> =
+        bars.iter().map(|bar| format!("{}: {}", bar.name, plain(bar.value, goodness.unit))).collect();
+    let label = format!("Typical error of the {}. {}.", channel(goodness.channel), told.join("; "));
+    html! {
+        figure {
+            figcaption {
+                h3 { (heading(channel(goodness.channel))) }
+                p { (looked_at(goodness)) @if axis.logarithmic { "Logarithmic: each tick is ten times the one before it." } }
+            }
+            svg.bars role="img" aria-label=(label) height=(ROW * bars.len()) {
+                @for (row, bar) in bars.iter().enumerate() { (drawn(&axis, goodness, bar, row)) }
+            }
+            p { (explained(answer, goodness)) }
+        }
+    }
+}
+
+struct Bar {
+    name: &'static str,
+    class: &'static str,
+    value: f64,
+}
+
+fn bars(answer: &Answer, goodness: &Goodness) -> Vec<Bar> {
+    let mut bars = vec![
+        Bar { name: "as given", class: "given", value: goodness.as_given },
+        Bar { name: "values refitted", class: "refitted", value: goodness.refitted },
+    ];
+    if names_physics(answer) {
+        bars.push(Bar { name: "with named physics", class: "improved", value: goodness.improved });
+    }
+    bars.push(Bar { name: "noise floor", class: "floor", value: goodness.noise_floor });
+    bars
+}
+
+fn drawn(axis: &Axis, goodness: &Goodness, bar: &Bar, row: usize) -> Markup {
+    let top = row * ROW;
+    let times_floor = bar.value / goodness.noise_floor;
+    html! {
+        text x="0" y=(top + 17) { (bar.name) }
+        text.figure x="100%" y=(top + 17) text-anchor="end" {
+            (plain(bar.value, goodness.unit))
+            @if bar.class != "floor" && times_floor.is_finite() { tspan.soft { " = " (times(times_floor)) " × noise" } }
+        }
+        rect.track x="0" y=(top + 24) width="100%" height="14" {}
+        @for decade in axis.decades() { (grid(axis, decade, top + 21)) }
+        @if let Some(length) = axis.at(bar.value) {
+            rect.(bar.class) x="0" y=(top + 24) width=(across(length)) height="14" {}
+        }
+    }
+}
+
+fn grid(axis: &Axis, decade: f64, top: usize) -> Markup {
+    let at = axis.at(decade).unwrap_or_default();
+    html! { line.decade x1=(across(at)) x2=(across(at)) y1=(top) y2=(top + 20) {} }
+}
+
+fn looked_at(goodness: &Goodness) -> String {
+    let known = goodness.band_hz.is_finite() && goodness.band_hz > 0.0;
+    if known { format!("Looked at up to {}. ", rounded(goodness.band_hz, "Hz", 3)) } else { String::new() }
+}
+
+fn explained(answer: &Answer, goodness: &Goodness) -> Markup {
+    let left = multiple(goodness.refitted / goodness.noise_floor);
+    let name = channel(goodness.channel);
+    html! {
+        @if names_physics(answer) {
+            "Of what refitted values leave in the " (name) " above the noise, the named physics takes away "
+            strong { (share(goodness.explained_share)) } "."
+        } @else if answer.verdict == Verdict::Unknown {
+            "Refitted values still leave " strong { (left) } " in the " (name) ", and no effect that was tried takes that away."
+        } @else {
+            "Refitted values leave " strong { (left) } " in the " (name) ", which is no sign of missing physics."
+        }
+    }
+}

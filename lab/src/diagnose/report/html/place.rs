@@ -1,0 +1,61 @@
+//! Where simulation and recordings differ.
+
+use super::super::diagnosis::{Answer, Location, Map, Pictures};
+use super::words::{channel, heading, location, share};
+use super::{map, names_physics};
+use maud::{Markup, html};
+
+/// More places than these are folded away.
+const SHOWN: usize = 6;
+/// In the order in which a reader asks.
+const CHANNELS: [&str; 2] = ["force", "effort"];
+
+/// Pictures and words; a sentence where there is nothing to locate.
+pub(super) fn section(answer: &Answer, pictures: &Pictures) -> Markup {
+    let improved = names_physics(answer);
+    html! {
+        section #where aria-labelledby="where-title" {
+            h2 #where-title { "Where it is off" }
+            (locations(answer))
+            @if pictures.maps.iter().any(|map| !map.labels.is_empty()) { (explanation(improved)) }
+            @for name in CHANNELS {
+                @let maps: Vec<&Map> = pictures.maps.iter().filter(|map| map.channel == name && !map.labels.is_empty()).collect();
+                @if !maps.is_empty() {
+                    h3.channel { (heading(channel(name))) }
+                    div.maps { @for map in maps { (map::figure(map, improved)) } }
+                }
+            }
+        }
+    }
+}
+
+fn locations(answer: &Answer) -> Markup {
+    if answer.locations.is_empty() {
+        return html! { p { "No stretch of the recordings stands out from the noise: there is no place at which the simulation is off." } };
+    }
+    let (first, rest) = answer.locations.split_at(answer.locations.len().min(SHOWN));
+    html! {
+        ol.places { @for place in first { (sentence(place)) } }
+        @if !rest.is_empty() {
+            details { summary { (rest.len()) " more places" } ol.places start=(SHOWN + 1) { @for place in rest { (sentence(place)) } } }
+        }
+    }
+}
+
+fn sentence(place: &Location) -> Markup {
+    html! {
+        li { strong { (share(place.share)) } " of what the simulation misses in the " (channel(place.channel)) " lies " (location(place)) "." }
+    }
+}
+
+fn explanation(improved: bool) -> Markup {
+    html! {
+        p.fine {
+            "Columns: how strong the error is, as a multiple of the power of the sensors' noise; one that ends at the dashed line is nothing but noise. The percentage over a column is its share of all that is missing. "
+            span.keys {
+                span { span.key.refitted {} (if improved { "before: values refitted" } else { "values refitted" }) }
+                @if improved { span { span.key.improved {} "after: with the named physics" } }
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Before and after: what is drawn of each trial.
+
+use super::super::diagnosis::{Answer, Location, Pictures, Trace, Verdict};
+use super::names_physics;
+use super::words::{channel, heading, phase, share, stretch, worst};
+use maud::{Markup, html};
+
+/// The channels of one trial.
+pub(super) struct Trial<'a> {
+    /// File name.
+    pub(super) name: &'a str,
+    /// With their place among all traces.
+    pub(super) traces: Vec<(usize, &'a Trace)>,
+    /// Where it differs, the largest first.
+    pub(super) places: Vec<&'a Location>,
+}
+
+/// A simulation that is drawn.
+pub(super) struct Line {
+    /// As the script finds its column.
+    pub(super) key: &'static str,
+    /// For the reader.
+    pub(super) name: &'static str,
+}
+
+/// The simulations that differ from each other.
+pub(super) fn lines(answer: &Answer) -> Vec<Line> {
+    let mut lines = vec![Line { key: "given", name: "as given" }, Line { key: "refitted", name: "values refitted" }];
+    if names_physics(answer) {
+        lines.push(Line { key: "improved", name: "with named physics" });
+    }
+    lines
+}
+
+/// Those two whose residuals are compared: what the answer changes.
+pub(super) fn compared(answer: &Answer) -> [&'static str; 2] {
+    if names_physics(answer) { ["refitted", "improved"] } else { ["given", "refitted"] }
+}
+
+/// Traces by trial, in the order in which they came.
+pub(super) fn group<'a>(answer: &'a Answer, pictures: &'a Pictures) -> Vec<Trial<'a>> {
+    let mut trials: Vec<Trial<'a>> = Vec::new();
+    for (index, trace) in pictures.traces.iter().enumerate().filter(|(_, trace)| !trace.time.is_empty()) {
+        match trials.iter_mut().find(|trial| trial.name == trace.trial) {
+            Some(trial) => trial.traces.push((index, trace)),
+            None => trials.push(Trial { name: &trace.trial, traces: vec![(index, trace)], places: Vec::new() }),
+        }
+    }
+    for trial in &mut trials {
+        trial.places = answer.locations.iter().filter(|place| place.trial == trial.name).collect();
+        // A share that is no number counts as the least.
+        trial.places.sort_by(|a, b| b.share.max(-1.0).total_cmp(&a.share.max(-1.0)));
+    }
+    trials
+}
+
+/// One fold a trial; the one with the largest place is open.
+pub(super) fn section(trials: &[Trial<'_>], answer: &Answer) -> Markup {
+    let opened = worst(answer, None)
+        .and_then(|place| trials.iter().position(|trial| trial.name == place.trial))
+        .unwrap_or_default();
+    html! {
+        @if trials.is_empty() {
+            p.nothing { "There is no recording to draw beside the simulation." }
+        } @else {
+            section #trials aria-labelledby="trials-title" {
+                h2 #trials-title { "Before and after" }
+                p.fine {
+                    @if trials.iter().any(|trial| !trial.places.is_empty()) { "Each trial opens on the place where most of its mismatch lies; such places are shaded. " }
+                    "Drag across a picture to zoom, double-click or press “whole trial” to see all of it."
+                }
+                noscript { p.notices { "These pictures need JavaScript. All other pictures and figures stand without it." } }
+                @for (index, trial) in trials.iter().enumerate() { (fold(trial, index, index == opened)) }
+            }
+        }
+    }
+}
+
+fn fold(trial: &Trial<'_>, index: usize, opened: bool) -> Markup {
+    html! {
+        details.trial data-trial=(index) open[opened] {
+            summary {
+                strong.file { (trial.name) } " "
+                span.where { @if let Some(place) = trial.places.first() { (share(place.share)) " of the " (channel(place.channel)) "'s mismatch lies " (phase(place.phase)) ", " (stretch(place)) } @else { "no place stands out" } }
+            }
+            div.pictures {}
+            @let rows = trial.traces.iter().map(|(_, trace)| trace.time.len()).max().unwrap_or_default();
+            p.fine.rows data-rows=(rows) {}
+        }
+    }
+}
+
+/// What the script copies into a trial.
+pub(super) fn templates(answer: &Answer) -> Markup {
+    html! {
+        template #toolbar { (toolbar()) }
+        @for name in ["force", "effort"] {
+            template #{ "figures-" (name) } {
+                (figure("model", &format!("{}: measured and simulated", heading(channel(name))), "What was measured, smoothed, and what each simulation gives for the same motion."))
+                (figure("residual", &format!("{}: what is left", heading(channel(name))), left(answer)))
+            }
+        }
+        template #figures-depth {
+            (figure("depth", "Depth", "Where the tool was: above the dashed line it is below the surface."))
+        }
+    }
+}
+
+fn left(answer: &Answer) -> &'static str {
+    match answer.verdict {
+        Verdict::NoMismatch => {
+            "Measured minus simulated. The grey band is ± 2 deviations of the sensors' noise: nothing leaves it for long."
+        }
+        _ => {
+            "Measured minus simulated. The grey band is ± 2 deviations of the sensors' noise: a good simulation stays within."
+        }
+    }
+}
+
+fn figure(kind: &str, title: &str, explanation: &str) -> Markup {
+    html! {
+        figure data-chart=(kind) {
+            figcaption { h3 { (title) } p { (explanation) } }
+            div.legend aria-hidden="true" {}
+            div.plot role="img" aria-label={ (title) " over time. " (explanation) } {}
+        }
+    }
+}
+
+fn toolbar() -> Markup {
+    html! {
+        div.toolbar role="group" aria-label="What the pictures show" {
+            div.choice.lines role="group" aria-label="Simulations shown" {}
+            div.choice.time role="group" aria-label="Time shown" {
+                button.worst type="button" data-move="worst" { "worst place" }
+                button.whole type="button" data-move="all" { "whole trial" }
+                button type="button" data-move="back" aria-label="Earlier" { "←" }
+                button type="button" data-move="forth" aria-label="Later" { "→" }
+                button type="button" data-move="in" aria-label="Zoom in" { "+" }
+                button type="button" data-move="out" aria-label="Zoom out" { "−" }
+                output.clock { "drag to zoom" }
+            }
+        }
+    }
+}

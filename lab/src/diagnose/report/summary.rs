@@ -1,0 +1,92 @@
+//! The answer in words that a mechanic understands.
+
+use super::diagnosis::{Answer, Verdict};
+use crate::diagnose::model::contact_phase;
+use crate::page::quantity;
+use crate::rig::Coordinate;
+
+/// One sentence or two.
+#[must_use]
+pub fn summary(answer: &Answer, coordinate: Coordinate) -> String {
+    let fit = &answer.fit;
+    let unit = fit.unit;
+    let (before, after) = (quantity::rounded(fit.refitted, unit, 3), quantity::rounded(fit.improved, unit, 3));
+    let floor = quantity::rounded(fit.noise_floor, unit, 3);
+    let rotary = if coordinate == Coordinate::Rotary { "torque" } else { "force" };
+    match answer.verdict {
+        Verdict::NoMismatch => {
+            format!(
+                "The simulation leaves no more than the sensors do ({floor}): nothing is missing that these recordings could show."
+            )
+        }
+        Verdict::Parameters => {
+            let given = quantity::rounded(fit.as_given, unit, 3);
+            format!(
+                "No physics is missing, only values are off: refitted, the residual {rotary} falls from {given} to {before}, where the sensors leave {floor}."
+            )
+        }
+        Verdict::Unknown => {
+            let place = answer.locations.first().map_or(String::new(), |location| {
+                format!(
+                    " {} of it lies in the {} during {}.",
+                    quantity::percent(100.0 * location.share),
+                    location.channel,
+                    contact_phase::word(location.phase)
+                )
+            });
+            format!(
+                "Something is missing that no effect of the list explains: {before} are left where the sensors leave {floor}.{place}"
+            )
+        }
+        Verdict::Explained | Verdict::PartlyExplained => {
+            let names: Vec<String> =
+                answer.physics.iter().filter(|p| p.name != "unknown").map(|p| p.name.replace('_', " ")).collect();
+            let rest = if answer.verdict == Verdict::PartlyExplained {
+                format!(" Something is left beside that: the sensors alone would leave {floor}.")
+            } else {
+                format!(" That is what the sensors leave ({floor}).")
+            };
+            let rivals = if answer.rivals.is_empty() {
+                String::new()
+            } else {
+                let all: Vec<String> = answer
+                    .rivals
+                    .iter()
+                    .map(|r| r.physics.first().map_or(String::new(), |n| n.replace('_', " ")))
+                    .collect();
+                format!(" These data cannot tell it from {}.", all.join(" or "))
+            };
+            format!(
+                "The simulation leaves out {}: with it the residual {} falls from {before} to {after} on data that no fit saw.{rest}{rivals}",
+                listed(&names),
+                if fit.channel == "effort" { "effort" } else { rotary }
+            )
+        }
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+/// What of the library carries an effect on the drive, where something does.
+#[must_use]
+pub fn on_drive(name: &str) -> Option<&'static str> {
+    match name {
+        "hunt_crossley_damping" => {
+            Some("ParameterRls with ContactModel::GrowingDamping follows K, B and alpha: regressor x v")
+        }
+        "tool_inertia" => Some("ParameterRls with ContactModel::ToolMass follows K, B and the mass: regressor a"),
+        "force_bias" => Some(
+            "ParameterRls with ContactModel::BiasedKelvinVoigt follows K, B and the bias: regressor 1; or tare before touching",
+        ),
+        "time_varying_stiffness" => {
+            Some("CusumRls follows a stiffness that jumps, AdaptiveWindow one that drifts: regressors x and v")
+        }
+        _ => None,
+    }
+}
