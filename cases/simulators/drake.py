@@ -75,7 +75,7 @@ class Model:
         beyond = inertia["mass"] if inertia else 1e-6 * rig.mass
         carriage, self.tool = self.slide("tool", mass - beyond, share * rig.viscous)
         tip = self.plant.AddRigidBody("tip", point_mass(beyond))
-        self.gauge = self.plant.AddJoint(WeldJoint("gauge", carriage.body_frame(), tip.body_frame(), RigidTransform()))
+        self.force_sensor = self.plant.AddJoint(WeldJoint("force_sensor", carriage.body_frame(), tip.body_frame(), RigidTransform()))
         driven, motor = carriage, self.tool
         if compliance:
             driven, motor = self.slide("motor", rig.mass - mass, (1 - share) * rig.viscous)
@@ -128,7 +128,7 @@ class Model:
     def pushed(self):
         """What the weld feels, N, positive when the tool pushes."""
         reactions = self.reactions.Eval(self.context)
-        return reactions[int(self.gauge.index())].translational()[0]
+        return reactions[int(self.force_sensor.index())].translational()[0]
 
 
 def point_mass(mass):

@@ -50,14 +50,14 @@ MODEL = """
       <inertial pos="0 0 0" mass="{mass}" diaginertia="1 1 1"/>
       <body name="tip">
         <inertial pos="0 0 0" mass="{beyond}" diaginertia="1e-9 1e-9 1e-9"/>
-        <site name="gauge"/>
+        <site name="force_sensor"/>
         <geom name="tip" type="sphere" pos="-{radius} 0 0" size="{radius}" condim="1" priority="1" {solid}/>
       </body>
     </body>
   </worldbody>
   <tendon>{link}{clamp}</tendon>
   <actuator><general name="motor" joint="{driven}" {actuator}/></actuator>
-  <sensor><force name="force" site="gauge" {gauge}/></sensor>
+  <sensor><force name="force" site="force_sensor" {force_sensor}/></sensor>
 </mujoco>
 """
 
@@ -95,7 +95,7 @@ def build(rig, effects):
         clamp=clamp(rig) if rig.bilateral else "",
         driven="motor" if cut else "tool",
         actuator=actuator(saturation, lag),
-        gauge=gauge(delay, end),
+        force_sensor=force_sensor(delay, end),
     )
     model = mujoco.MjModel.from_xml_string(text)
     if not rig.bilateral:
@@ -119,7 +119,7 @@ def link(compliance, backlash):
 def clamp(rig):
     """To the environment: K p + B v both ways."""
     law = f'stiffness="{rig.stiffness}" damping="{rig.damping}" springlength="{ANCHOR - rig.surface}"'
-    return f'<spatial name="clamp" {law}><site site="gauge"/><site site="anchor"/></spatial>'
+    return f'<spatial name="clamp" {law}><site site="force_sensor"/><site site="anchor"/></spatial>'
 
 
 def actuator(saturation, lag):
@@ -130,7 +130,7 @@ def actuator(saturation, lag):
     return law
 
 
-def gauge(delay, end):
+def force_sensor(delay, end):
     """The force sensor."""
     law = ""
     if end:

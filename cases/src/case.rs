@@ -4,18 +4,18 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use crate::bench::Bench;
-use crate::chance::{self, Stream};
-use crate::nominal::Nominal;
-use crate::plan::Plan;
-use crate::recording::{Recording, channels};
-use crate::rig::RigFile;
+use crate::case_request::CaseRequest;
+use crate::case_spec::CaseSpec;
+use crate::nominal::NominalParameters;
+use crate::recorded_trial::{RecordedTrial, channels};
+use crate::rig_file::RigFile;
+use crate::rng::{self, Stream};
 use crate::scale::{Scale, Unit};
 use crate::sensors::Sensors;
+use crate::simulator::{OwnSimulator, Simulator};
 use crate::strength;
+use crate::test_rig::TestRig;
 use crate::truth::Truth;
-use crate::wish::Wish;
-use crate::world::{Own, World};
 
 /// One case.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Case {
     /// The rig file's text.
     pub rig: String,
     /// Two trials.
-    pub trials: Vec<Recording>,
+    pub trials: Vec<RecordedTrial>,
     /// What they conceal.
     pub truth: Truth,
 }
@@ -44,68 +44,68 @@ impl Case {
     }
 }
 
-/// Case `index` of `seed` in our own simulation, as `wish` has it: the same for the same three.
+/// Case `index` of `seed` in our own simulation, as `request` has it: the same for the same three.
 ///
 /// # Errors
-/// The wish names an unknown effect, or one that its other choices hide.
-pub fn draw(seed: u64, index: u64, wish: &Wish) -> Result<Case> {
-    draw_in(&mut Own, seed, index, wish)
+/// The request names an unknown effect, or one that its other choices hide.
+pub fn draw(seed: u64, index: u64, request: &CaseRequest) -> Result<Case> {
+    draw_in(&mut OwnSimulator, seed, index, request)
 }
 
-/// Case `index` of `seed` in `world`, as `wish` has it: the same for the same four.
+/// Case `index` of `seed` in `simulator`, as `request` has it: the same for the same four.
 ///
 /// # Errors
-/// The wish names an effect that `world` does not have, or one that its other choices hide; or `world` gave up.
-pub fn draw_in<W: World>(world: &mut W, seed: u64, index: u64, wish: &Wish) -> Result<Case> {
-    let plan = Plan::draw(wish, world.offer(), &mut chance::stream(seed, index, Stream::Plan))?;
-    let bench = Bench::draw(world, &plan, seed, index);
-    let (effects, tracks) = bench.conceal(world, &plan, &chance::stream(seed, index, Stream::Shape))?;
-    let mut noise = chance::stream(seed, index, Stream::Noise);
-    let trials = tracks
+/// The request names an effect that `simulator` does not have, or one that its other choices hide; or `simulator` gave up.
+pub fn draw_in<W: Simulator>(simulator: &mut W, seed: u64, index: u64, request: &CaseRequest) -> Result<Case> {
+    let spec = CaseSpec::draw(request, simulator.supported(), &mut rng::stream(seed, index, Stream::Spec))?;
+    let rig = TestRig::draw(simulator, &spec, seed, index);
+    let (effects, trials) = rig.simulate_with_effects(simulator, &spec, &rng::stream(seed, index, Stream::Effect))?;
+    let mut noise = rng::stream(seed, index, Stream::Noise);
+    let recordings = trials
         .iter()
-        .zip(&bench.references)
-        .map(|(track, reference)| Recording::new(track, reference, &plan, &bench.sensors, &mut noise))
+        .zip(&rig.references)
+        .map(|(trial, reference)| RecordedTrial::new(trial, reference, &spec, &rig.sensors, &mut noise))
         .collect();
-    let scale = plan.scale;
-    let Sensors { position_step, force_step, force_noise } = bench.sensors;
+    let scale = spec.scale;
+    let Sensors { position_step, force_step, force_noise } = rig.sensors;
     let truth = Truth {
-        source: world.source(),
+        source: simulator.source(),
         seed,
         index,
-        kind: plan.kind,
+        kind: spec.kind,
         effects,
-        strength: bench.ratio(strength::residual(&tracks, &bench.setup.nominal, &bench.sensors), plan.effort),
-        floor: scale.apply(bench.sensors.floor(), Unit::Force),
+        strength: rig.strength(strength::residual(&trials, &rig.setup.nominal, &rig.sensors), spec.effort),
+        floor: scale.apply(rig.sensors.floor(), Unit::Force),
         floor_unit: Unit::Force.name(scale.rotary),
-        channels: channels(&plan),
-        grade: plan.grade,
+        channels: channels(&spec),
+        grade: spec.grade,
         sensors: Sensors {
             position_step: scale.apply(position_step, Unit::Length),
             force_step: scale.apply(force_step, Unit::Force),
             force_noise: scale.apply(force_noise, Unit::Force),
         },
-        sensors_stated: plan.stated.0,
-        nominal: scaled(&bench.setup.nominal, scale),
-        stated: scaled(&bench.stated, scale),
-        reference: plan.reference,
+        sensors_stated: spec.stated.0,
+        nominal: scaled(&rig.setup.nominal, scale),
+        stated: scaled(&rig.stated, scale),
+        excitation: spec.excitation,
         scale,
     };
-    Ok(Case { rig: rig_file(&bench, &plan).text(), trials, truth })
+    Ok(Case { rig: rig_file(&rig, &spec).text(), trials: recordings, truth })
 }
 
-fn rig_file(bench: &Bench, plan: &Plan) -> RigFile {
+fn rig_file(rig: &TestRig, spec: &CaseSpec) -> RigFile {
     RigFile {
-        scale: plan.scale,
-        stated: bench.stated,
-        drive: plan.effort,
-        control: plan.control_stated.then_some(bench.setup.control),
-        sensors: plan.stated.0.then_some(bench.sensors),
-        noise: plan.stated.1,
+        scale: spec.scale,
+        stated: rig.stated,
+        drive: spec.effort,
+        control: spec.control_stated.then_some(rig.setup.control),
+        sensors: spec.stated.0.then_some(rig.sensors),
+        noise: spec.stated.1,
     }
 }
 
-fn scaled(nominal: &Nominal, scale: Scale) -> Nominal {
-    Nominal {
+fn scaled(nominal: &NominalParameters, scale: Scale) -> NominalParameters {
+    NominalParameters {
         mass: scale.apply(nominal.mass, Unit::Mass),
         viscous: scale.apply(nominal.viscous, Unit::Damping),
         stiffness: scale.apply(nominal.stiffness, Unit::Stiffness),

@@ -1,47 +1,47 @@
-//! The concealed physics, one family a file: a shape is drawn, and its size is found for a strength.
+//! The concealed effects, one family a file: their parameters are drawn, and their size is found for a strength.
 
 use std::fmt::Debug;
 
 use rand::RngExt;
 
-use crate::chance::Chance;
-use crate::nominal::Nominal;
-use crate::physics::Physics;
+use crate::nominal::NominalParameters;
+use crate::physics::RigModel;
+use crate::rng::CaseRng;
 use crate::scale::{Scale, Unit};
 
+pub mod active_surface;
 pub mod actuator;
 pub mod adhesion;
 pub mod cogging;
 pub mod damping;
 pub mod delay;
-pub mod elastic;
+pub mod environment_mass;
+pub mod external_push;
+pub mod force_offset;
+pub mod force_range;
+pub mod force_resonance;
 pub mod friction;
-pub mod glitch;
 pub mod gravity;
-pub mod hum;
 pub mod hysteresis;
+pub mod loose_contact;
 pub mod lost_motion;
-pub mod name;
-pub mod offset;
-pub mod plasticity;
-pub mod pulse;
-pub mod pushes;
-pub mod range;
-pub mod relaxation;
-pub mod ringing;
-pub mod ripple;
-pub mod softening;
-pub mod spots;
-pub mod surface;
-pub mod tissue;
+pub mod mains_hum;
+pub mod periodic_force_error;
+pub mod plastic_set;
+pub mod position_dependent_friction;
+pub mod registry;
+pub mod stiffness;
+pub mod stress_relaxation;
+pub mod surface_motion;
+pub mod thermal_wander;
+pub mod time_varying_stiffness;
 pub mod transmission;
-pub mod wander;
 
-/// What a trial without any effect is like: shapes are drawn to suit it.
+/// Statistics of the trials without any effect, to which the drawn parameters are scaled.
 #[derive(Debug, Clone, Copy)]
-pub struct Scene {
+pub struct NominalMotion {
     /// The rig.
-    pub nominal: Nominal,
+    pub nominal: NominalParameters,
     /// Deepest contact, m.
     pub depth: f64,
     /// Largest contact force, N.
@@ -54,32 +54,32 @@ pub struct Scene {
     pub travel: (f64, f64),
     /// Of a trial, s.
     pub duration: f64,
-    /// From the bench to the case.
+    /// From bench scale to the scale of the case.
     pub scale: Scale,
 }
 
 /// The sizes that a shape can have; what they measure is its own.
 #[derive(Debug, Clone, Copy)]
-pub struct Sizes {
+pub struct SizeRange {
     /// Nothing smaller can be simulated.
     pub smallest: f64,
     /// A good guess.
-    pub first: f64,
+    pub initial: f64,
     /// Nothing larger is plausible.
     pub largest: f64,
 }
 
-impl Sizes {
+impl SizeRange {
     /// Down to nothing, up to `largest`.
     #[must_use]
-    pub fn new(first: f64, largest: f64) -> Self {
-        Self { smallest: 1e-6 * first, first, largest }
+    pub fn new(initial: f64, largest: f64) -> Self {
+        Self { smallest: 1e-6 * initial, initial, largest }
     }
 }
 
 /// A true value, at the size of a bench.
 #[derive(Debug, Clone, Copy)]
-pub struct Parameter {
+pub struct EffectParameter {
     /// What it is.
     pub name: &'static str,
     /// In SI units.
@@ -88,7 +88,7 @@ pub struct Parameter {
     pub unit: Unit,
 }
 
-impl Parameter {
+impl EffectParameter {
     /// A value by name.
     #[must_use]
     pub fn new(name: &'static str, value: f64, unit: Unit) -> Self {
@@ -96,101 +96,101 @@ impl Parameter {
     }
 }
 
-/// An effect with all of its shape drawn but its size.
-pub trait Shape: Debug {
+/// An effect whose parameters are drawn except for its size.
+pub trait EffectShape: Debug {
     /// The form of its equation, for the reader of the answers.
     fn form(&self) -> &'static str;
     /// Its possible sizes.
-    fn sizes(&self) -> Sizes;
+    fn size_range(&self) -> SizeRange;
     /// Its true values at `size`.
-    fn parameters(&self, size: f64) -> Vec<Parameter>;
+    fn parameters(&self, size: f64) -> Vec<EffectParameter>;
 }
 
-/// A shape that our own simulation can act out.
-pub trait Acting: Shape {
-    /// Adds it, of a `size` above zero, to the physics of a trial.
-    fn put(&self, size: f64, physics: &mut Physics);
+/// An effect that our own simulator has.
+pub trait SimulatedEffect: EffectShape {
+    /// Adds it, of a `size` above zero, to the model of a trial.
+    fn apply(&self, size: f64, model: &mut RigModel);
 }
 
 /// The effect `name` with a shape at random; none where the name is unknown.
 #[must_use]
-pub fn draw(name: &str, scene: &Scene, chance: &Chance) -> Option<Box<dyn Acting>> {
-    let chance = &mut own_chance(name, chance);
-    contact(name, scene, chance)
-        .or_else(|| drive(name, scene, chance))
-        .or_else(|| sensor(name, scene, chance))
-        .or_else(|| outside(name, scene, chance))
+pub fn draw(name: &str, motion: &NominalMotion, rng: &CaseRng) -> Option<Box<dyn SimulatedEffect>> {
+    let rng = &mut effect_rng(name, rng);
+    contact(name, motion, rng)
+        .or_else(|| drive(name, motion, rng))
+        .or_else(|| sensor(name, motion, rng))
+        .or_else(|| outside(name, motion, rng))
 }
 
 /// The random numbers of the effect `name` alone: what is asked for first must not move what others draw.
 #[must_use]
-pub fn own_chance(name: &str, chance: &Chance) -> Chance {
-    let mut own = chance.clone();
+pub fn effect_rng(name: &str, rng: &CaseRng) -> CaseRng {
+    let mut own = rng.clone();
     own.set_stream(64 + name.bytes().fold(0u64, |sum, byte| sum.wrapping_mul(131).wrapping_add(u64::from(byte))));
     own.random::<u64>();
     own
 }
 
-fn contact(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
+fn contact(name: &str, motion: &NominalMotion, rng: &mut CaseRng) -> Option<Box<dyn SimulatedEffect>> {
     Some(match name {
-        "nonlinear_stiffness" => Box::new(elastic::Nonlinear::draw(scene, chance)),
-        "layered_stiffness" => Box::new(elastic::Layered::draw(scene, chance)),
-        "hunt_crossley_damping" => Box::new(damping::HuntCrossley::draw(scene, chance)),
-        "quadratic_damping" => Box::new(damping::Quadratic::draw(scene, chance)),
-        "stress_relaxation" => Box::new(relaxation::Relaxation::draw(scene, chance)),
-        "hysteresis" => Box::new(hysteresis::Hysteresis::draw(scene, chance)),
-        "plastic_set" => Box::new(plasticity::PlasticSet::draw(scene, chance)),
-        "adhesion" => Box::new(adhesion::Adhesion::draw(scene, chance)),
-        "lost_motion" => Box::new(lost_motion::LostMotion::draw(scene, chance)),
-        "time_varying_stiffness" => Box::new(softening::Softening::draw(scene, chance)),
-        "surface_motion" => Box::new(surface::Surface::draw(scene, chance)),
-        "environment_mass" => Box::new(tissue::EnvironmentMass::draw(scene, chance)),
+        "nonlinear_stiffness" => Box::new(stiffness::NonlinearStiffness::draw(motion, rng)),
+        "layered_stiffness" => Box::new(stiffness::LayeredStiffness::draw(motion, rng)),
+        "hunt_crossley_damping" => Box::new(damping::HuntCrossleyDamping::draw(motion, rng)),
+        "quadratic_damping" => Box::new(damping::QuadraticDamping::draw(motion, rng)),
+        "stress_relaxation" => Box::new(stress_relaxation::StressRelaxation::draw(motion, rng)),
+        "hysteresis" => Box::new(hysteresis::Hysteresis::draw(motion, rng)),
+        "plastic_set" => Box::new(plastic_set::PlasticSet::draw(motion, rng)),
+        "adhesion" => Box::new(adhesion::Adhesion::draw(motion, rng)),
+        "lost_motion" => Box::new(lost_motion::LostMotion::draw(motion, rng)),
+        "time_varying_stiffness" => Box::new(time_varying_stiffness::TimeVaryingStiffness::draw(motion, rng)),
+        "surface_motion" => Box::new(surface_motion::SurfaceMotion::draw(motion, rng)),
+        "environment_mass" => Box::new(environment_mass::EnvironmentMass::draw(motion, rng)),
         _ => return None,
     })
 }
 
-fn drive(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
+fn drive(name: &str, motion: &NominalMotion, rng: &mut CaseRng) -> Option<Box<dyn SimulatedEffect>> {
     Some(match name {
-        "coulomb_friction" => Box::new(friction::Coulomb::draw(scene, chance)),
-        "stribeck_friction" => Box::new(friction::Slowing::draw(scene, chance)),
-        "load_dependent_friction" => Box::new(friction::LoadDependent),
-        "gravity_load" => Box::new(gravity::GravityLoad::draw(scene, chance)),
-        "cogging" => Box::new(cogging::Teeth::draw(scene, chance)),
-        "backlash" => Box::new(transmission::Backlash::draw(scene, chance)),
-        "transmission_compliance" => Box::new(transmission::Compliance::draw(scene, chance)),
-        "effort_saturation" => Box::new(actuator::EffortSaturation::draw(scene)),
+        "coulomb_friction" => Box::new(friction::CoulombFriction::draw(motion, rng)),
+        "stribeck_friction" => Box::new(friction::StribeckFriction::draw(motion, rng)),
+        "load_dependent_friction" => Box::new(friction::LoadDependentFriction),
+        "gravity_load" => Box::new(gravity::GravityLoad::draw(motion, rng)),
+        "cogging" => Box::new(cogging::Cogging::draw(motion, rng)),
+        "backlash" => Box::new(transmission::Backlash::draw(motion, rng)),
+        "transmission_compliance" => Box::new(transmission::TransmissionCompliance::draw(motion, rng)),
+        "effort_saturation" => Box::new(actuator::EffortSaturation::draw(motion)),
         "effort_lag" => Box::new(actuator::EffortLag),
         _ => return None,
     })
 }
 
-fn sensor(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
+fn sensor(name: &str, motion: &NominalMotion, rng: &mut CaseRng) -> Option<Box<dyn SimulatedEffect>> {
     Some(match name {
-        "force_bias" => Box::new(offset::ForceBias::draw(scene, chance)),
-        "force_drift" => Box::new(offset::ForceDrift::draw(scene, chance)),
-        "tool_inertia" => Box::new(delay::ToolInertia { mass: scene.nominal.mass }),
+        "force_bias" => Box::new(force_offset::ForceBias::draw(motion, rng)),
+        "force_drift" => Box::new(force_offset::ForceDrift::draw(motion, rng)),
+        "tool_inertia" => Box::new(delay::ToolInertia { mass: motion.nominal.mass }),
         "channel_delay" => Box::new(delay::ChannelDelay),
         "force_lag" => Box::new(delay::ForceLag),
-        "force_saturation" => Box::new(range::ForceSaturation::draw(scene, chance)),
-        "force_gain" => Box::new(range::ForceGain::draw(chance)),
-        "mains_hum" => Box::new(hum::MainsHum::draw(scene, chance)),
+        "force_saturation" => Box::new(force_range::ForceSaturation::draw(motion, rng)),
+        "force_gain" => Box::new(force_range::ForceGain::draw(rng)),
+        "mains_hum" => Box::new(mains_hum::MainsHum::draw(motion, rng)),
         _ => return None,
     })
 }
 
-fn outside(name: &str, scene: &Scene, chance: &mut Chance) -> Option<Box<dyn Acting>> {
+fn outside(name: &str, motion: &NominalMotion, rng: &mut CaseRng) -> Option<Box<dyn SimulatedEffect>> {
     Some(match name {
-        "force_resonance" => Box::new(ringing::Resonance::draw(chance)),
-        "effort_crosstalk" => Box::new(ringing::Crosstalk::draw(scene)),
-        "thermal_wander" => Box::new(wander::ThermalWander::draw(scene, chance)),
-        "signed_damping" => Box::new(spots::SignedDamping::draw(scene, chance)),
-        "sticky_spots" => Box::new(spots::StickySpots::draw(scene, chance)),
-        "outside_pushes" => Box::new(pushes::Pushing::draw(scene, chance)),
-        "buckling" => Box::new(elastic::Buckling::draw(scene, chance)),
-        "heartbeat" => Box::new(pulse::Beating::draw(scene, chance)),
-        "reflex" => Box::new(pulse::Answering::draw(scene, chance)),
-        "periodic_force_error" => Box::new(ripple::PeriodicError::draw(scene, chance)),
-        "loose_contact" => Box::new(glitch::LooseContact::draw(scene, chance)),
+        "force_resonance" => Box::new(force_resonance::ForceResonance::draw(rng)),
+        "effort_crosstalk" => Box::new(force_resonance::EffortCrosstalk::draw(motion)),
+        "thermal_wander" => Box::new(thermal_wander::ThermalWander::draw(motion, rng)),
+        "signed_damping" => Box::new(position_dependent_friction::SignedDamping::draw(motion, rng)),
+        "sticky_spots" => Box::new(position_dependent_friction::StickySpots::draw(motion, rng)),
+        "outside_pushes" => Box::new(external_push::ExternalPush::draw(motion, rng)),
+        "buckling" => Box::new(stiffness::Buckling::draw(motion, rng)),
+        "heartbeat" => Box::new(active_surface::Heartbeat::draw(motion, rng)),
+        "reflex" => Box::new(active_surface::Reflex::draw(motion, rng)),
+        "periodic_force_error" => Box::new(periodic_force_error::PeriodicForceError::draw(motion, rng)),
+        "loose_contact" => Box::new(loose_contact::LooseContact::draw(motion, rng)),
         _ => return None,
     })
 }

@@ -1,38 +1,37 @@
-//! Recordings of simulated rigs with concealed physics, to prove a diagnosis on. Nothing is shared with the tool that
-//! is proved: another integrator, and the effects in forms of their own.
+//! Recordings of simulated rigs with concealed physics, to test a diagnosis. Nothing is shared with the tool under
+//! test: another integrator, and the effects in equations of their own.
 //!
-//! [`draw()`] makes a [`Case`] from a seed: a rig file with nominal values, two trials in a
-//! closed loop, and apart from them the [`Truth`]. How large an effect is, is told by its strength: the
-//! RMS of what the nominal physics cannot take up, over the floor of the sensor. [`draw_in`] makes the same from the
-//! simulations of others: a [`Simulator`] is MuJoCo, Drake or Exudyn.
+//! [`draw()`] makes a [`Case`] from a seed: a rig file with nominal values, two closed-loop trials, and apart from them the
+//! [`Truth`]. The strength of an effect is the RMS residual of the refitted nominal model over the RMS error of the force
+//! sensor. [`draw_in`] makes the same with another simulator: an [`ExternalSimulator`] is MuJoCo, Drake or Exudyn.
+//!
+//! Modules depend on one another in one direction: `physics` (equations and state) knows no random numbers, `effect` (how the
+//! parameters of an effect are drawn) knows `physics`, and `simulator` knows both.
 
-pub mod bench;
+pub mod baselines;
 pub mod case;
-pub mod chance;
-pub mod contact;
-pub mod drive;
+pub mod case_request;
+pub mod case_spec;
+pub mod closed_loop;
 pub mod effect;
-pub mod elsewhere;
-pub mod gauge;
+pub mod excitation;
+pub mod external_simulators;
 pub mod nominal;
 pub mod physics;
-pub mod plan;
 pub mod python;
-pub mod recording;
-pub mod reference;
-pub mod rig;
-pub mod rivals;
+pub mod recorded_trial;
+pub mod rig_file;
+pub mod rng;
 pub mod scale;
-pub mod search;
 pub mod sensors;
-pub mod simulate;
+pub mod simulator;
+pub mod size_search;
 pub mod strength;
+pub mod test_rig;
 pub mod truth;
-pub mod wish;
-pub mod world;
 
 pub use case::{Case, draw, draw_in};
-pub use elsewhere::Simulator;
+pub use case_request::{CaseRequest, EffectSelection};
+pub use external_simulators::ExternalSimulator;
+pub use simulator::{Simulator, SimulatorKind};
 pub use truth::Truth;
-pub use wish::{What, Wish};
-pub use world::{Source, World};

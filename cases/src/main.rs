@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
+use palpate_cases::baselines::Baseline;
+use palpate_cases::excitation::Excitation;
 use palpate_cases::python;
-use palpate_cases::reference::Kind as Reference;
-use palpate_cases::rivals::Rival;
-use palpate_cases::sensors::Grade;
-use palpate_cases::world::{Own, Source, World};
-use palpate_cases::{Simulator, What, Wish, draw_in};
+use palpate_cases::sensors::SensorGrade;
+use palpate_cases::simulator::{OwnSimulator, Simulator, SimulatorKind};
+use palpate_cases::{CaseRequest, EffectSelection, ExternalSimulator, draw_in};
 use serde::Serialize;
 
 /// Recordings of simulated rigs with concealed physics
@@ -23,62 +23,62 @@ struct Cli {
     /// Number of cases
     #[arg(long, default_value_t = 10)]
     count: u64,
-    /// What each conceals; drawn where left out
+    /// Number of concealed effects; drawn where left out
     #[arg(long)]
-    kind: Option<Kind>,
+    kind: Option<KindChoice>,
     /// The effect that each conceals; two, with a comma between them, make a pair
     #[arg(long, value_delimiter = ',')]
     effect: Vec<String>,
-    /// Strength over the floor of the sensor; 0.1 to 10 at random where left out
+    /// RMS residual of the refitted nominal model over the RMS sensor error; 0.1 to 10 at random where left out
     #[arg(long)]
     strength: Option<f64>,
-    /// Sensors; drawn where left out
+    /// SensorChoice; drawn where left out
     #[arg(long)]
-    sensors: Option<Sensors>,
-    /// Trajectories; drawn where left out
+    sensors: Option<SensorChoice>,
+    /// ExcitationChoice; drawn where left out
     #[arg(long)]
-    reference: Option<Trajectories>,
+    reference: Option<ExcitationChoice>,
     /// Leave the effort out
     #[arg(long)]
     no_effort: bool,
     /// Only linear rigs at the size of a bench
     #[arg(long)]
     bench: bool,
-    /// Whose simulation makes them
+    /// Simulator that makes the cases
     #[arg(long, default_value = "own")]
-    source: Maker,
-    /// Folder in which Python packages are set up for the tools of others
+    source: SimulatorChoice,
+    /// Folder in which Python packages are set up for simulators and baselines
     #[arg(long, default_value = "target/python")]
     python_home: PathBuf,
-    /// Have PySINDy and SysIdentPy look at each case, and write what they find beside the answers
+    /// Run PySINDy and SysIdentPy on each case, and write their results beside the answers
     #[arg(long)]
-    rivals: bool,
+    baselines: bool,
     /// Folder to write to
     #[arg(long)]
     out: PathBuf,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Maker {
+enum SimulatorChoice {
     Own,
     Mujoco,
     Drake,
     Exudyn,
 }
 
-impl Maker {
-    fn source(self) -> Source {
+impl SimulatorChoice {
+    fn source(self) -> SimulatorKind {
         match self {
-            Self::Own => Source::Own,
-            Self::Mujoco => Source::Mujoco,
-            Self::Drake => Source::Drake,
-            Self::Exudyn => Source::Exudyn,
+            Self::Own => SimulatorKind::Own,
+            Self::Mujoco => SimulatorKind::Mujoco,
+            Self::Drake => SimulatorKind::Drake,
+            Self::Exudyn => SimulatorKind::Exudyn,
         }
     }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Kind {
+enum KindChoice {
     None,
     Single,
     Pair,
@@ -86,46 +86,48 @@ enum Kind {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Sensors {
+enum SensorChoice {
     Coarse,
     Fine,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Trajectories {
+enum ExcitationChoice {
     Rich,
     Poor,
 }
 
 impl Cli {
-    fn wish(&self) -> Wish {
-        Wish {
-            what: self.what(),
+    fn request(&self) -> CaseRequest {
+        CaseRequest {
+            selection: self.selection(),
             sensors: self.sensors.map(|grade| match grade {
-                Sensors::Coarse => Grade::Coarse,
-                Sensors::Fine => Grade::Fine,
+                SensorChoice::Coarse => SensorGrade::Coarse,
+                SensorChoice::Fine => SensorGrade::Fine,
             }),
-            reference: self.reference.map(|kind| match kind {
-                Trajectories::Rich => Reference::Rich,
-                Trajectories::Poor => Reference::Poor,
+            excitation: self.reference.map(|kind| match kind {
+                ExcitationChoice::Rich => Excitation::Rich,
+                ExcitationChoice::Poor => Excitation::Poor,
             }),
             effort: self.no_effort.then_some(false),
             rotary: self.bench.then_some(false),
             bench: self.bench.then_some(true),
-            ..Wish::default()
+            ..CaseRequest::default()
         }
     }
 
-    fn what(&self) -> Option<What> {
+    fn selection(&self) -> Option<EffectSelection> {
         let strength = self.strength;
         match (self.effect.as_slice(), self.kind) {
-            ([one], _) => Some(What::single(one, strength)),
-            ([one, other, ..], _) => Some(What::Pair { names: Some([one.clone(), other.clone()]), strength }),
-            ([], Some(Kind::None)) => Some(What::Nothing),
-            ([], Some(Kind::Single)) => Some(What::Single { name: None, strength }),
-            ([], Some(Kind::Pair)) => Some(What::Pair { names: None, strength }),
-            ([], Some(Kind::Outside)) => Some(What::Outside { name: None, strength }),
-            ([], None) => strength.map(|_| What::Single { name: None, strength }),
+            ([one], _) => Some(EffectSelection::single(one, strength)),
+            ([one, other, ..], _) => {
+                Some(EffectSelection::Pair { names: Some([one.clone(), other.clone()]), strength })
+            }
+            ([], Some(KindChoice::None)) => Some(EffectSelection::Nothing),
+            ([], Some(KindChoice::Single)) => Some(EffectSelection::Single { name: None, strength }),
+            ([], Some(KindChoice::Pair)) => Some(EffectSelection::Pair { names: None, strength }),
+            ([], Some(KindChoice::Outside)) => Some(EffectSelection::Outside { name: None, strength }),
+            ([], None) => strength.map(|_| EffectSelection::Single { name: None, strength }),
         }
     }
 }
@@ -133,32 +135,32 @@ impl Cli {
 fn main() -> Result<()> {
     let cli = Cli::parse();
     match cli.source.source() {
-        Source::Own => write_all(&cli, &mut Own),
+        SimulatorKind::Own => write_all(&cli, &mut OwnSimulator),
         source => {
             let python = python::set_up(&cli.python_home, &python::SIMULATORS)?;
-            write_all(&cli, &mut Simulator::start(&python, source)?)
+            write_all(&cli, &mut ExternalSimulator::start(&python, source)?)
         }
     }
 }
 
-fn write_all<W: World>(cli: &Cli, world: &mut W) -> Result<()> {
-    let wish = cli.wish();
-    let rivals = cli.rivals.then(|| python::set_up(&cli.python_home, &python::RIVALS)).transpose()?;
-    let (mut truths, mut findings) = (Vec::new(), Vec::new());
+fn write_all<W: Simulator>(cli: &Cli, simulator: &mut W) -> Result<()> {
+    let request = cli.request();
+    let baselines = cli.baselines.then(|| python::set_up(&cli.python_home, &python::BASELINES)).transpose()?;
+    let (mut truths, mut results) = (Vec::new(), Vec::new());
     for index in 0..cli.count {
-        let case = draw_in(world, cli.seed, index, &wish)?;
+        let case = draw_in(simulator, cli.seed, index, &request)?;
         let folder = cli.out.join(format!("case-{index:04}"));
         case.write(&folder)?;
         truths.push(case.truth);
-        if let Some(python) = &rivals {
-            let found = Rival::ALL.into_iter().map(|rival| Ok((rival.name(), rival.look(python, &folder)?)));
-            findings.push(found.collect::<Result<BTreeMap<_, _>>>()?);
+        if let Some(python) = &baselines {
+            let found = Baseline::ALL.into_iter().map(|rival| Ok((rival.name(), rival.run(python, &folder)?)));
+            results.push(found.collect::<Result<BTreeMap<_, _>>>()?);
         }
     }
     std::fs::create_dir_all(&cli.out).with_context(|| format!("cannot make {}", cli.out.display()))?;
     write_json(&cli.out.join("truth.json"), &truths)?;
-    if rivals.is_some() {
-        write_json(&cli.out.join("rivals.json"), &findings)?;
+    if baselines.is_some() {
+        write_json(&cli.out.join("baselines.json"), &results)?;
     }
     Ok(())
 }

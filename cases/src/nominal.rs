@@ -3,11 +3,11 @@
 use rand::RngExt;
 use serde::Serialize;
 
-use crate::chance::{Chance, log_uniform};
+use crate::rng::{CaseRng, log_uniform};
 
 /// The values of the nominal physics: `m a + b v = effort - F`, `F = max(0, K p + B v)` for `p = x - surface > 0`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Nominal {
+pub struct NominalParameters {
     /// Moving mass m, kg.
     pub mass: f64,
     /// Viscous friction b, N s/m.
@@ -24,7 +24,7 @@ pub struct Nominal {
 
 /// Position control, `effort = proportional e + derivative de/dt`, at 1 kHz on the encoder's reading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Control {
+pub struct PdGains {
     /// N/m
     pub proportional: f64,
     /// N s/m
@@ -33,28 +33,28 @@ pub struct Control {
     pub filter_hz: f64,
 }
 
-impl Nominal {
+impl NominalParameters {
     /// A rig as benches are, and the deepest contact that suits it, m.
     #[must_use]
-    pub fn draw(chance: &mut Chance, bilateral: bool) -> (Self, f64) {
-        let mass = log_uniform(chance, 0.3, 1.5);
-        let stiffness = log_uniform(chance, 150.0, 3000.0);
-        let ratio = log_uniform(chance, 0.05, 0.4);
+    pub fn draw(rng: &mut CaseRng, bilateral: bool) -> (Self, f64) {
+        let mass = log_uniform(rng, 0.3, 1.5);
+        let stiffness = log_uniform(rng, 150.0, 3000.0);
+        let ratio = log_uniform(rng, 0.05, 0.4);
         let damping = (2.0 * ratio * (stiffness * mass).sqrt()).clamp(2.0, 20.0);
-        let viscous = chance.random_range(1.0..6.0);
-        let surface = if chance.random_bool(0.4) { 0.0 } else { chance.random_range(-0.005..0.005) };
-        let depth = (log_uniform(chance, 2.0, 12.0) / stiffness).clamp(0.0015, 0.015);
+        let viscous = rng.random_range(1.0..6.0);
+        let surface = if rng.random_bool(0.4) { 0.0 } else { rng.random_range(-0.005..0.005) };
+        let depth = (log_uniform(rng, 2.0, 12.0) / stiffness).clamp(0.0015, 0.015);
         (Self { mass, viscous, stiffness, damping, surface, bilateral }, depth)
     }
 }
 
-impl Control {
+impl PdGains {
     /// Gains of a stable loop about `nominal`.
     #[must_use]
-    pub fn draw(chance: &mut Chance, nominal: &Nominal) -> Self {
-        let corner: f64 = chance.random_range(32.0..50.0);
+    pub fn draw(rng: &mut CaseRng, nominal: &NominalParameters) -> Self {
+        let corner: f64 = rng.random_range(32.0..50.0);
         let proportional = nominal.mass * corner * corner;
-        let derivative = 2.0 * chance.random_range(0.35..0.6) * nominal.mass * corner;
+        let derivative = 2.0 * rng.random_range(0.35..0.6) * nominal.mass * corner;
         Self { proportional, derivative, filter_hz: 100.0 }
     }
 }

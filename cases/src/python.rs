@@ -17,7 +17,7 @@ const OLDEST: (u32, u32) = (3, 11);
 pub struct Packages {
     /// Names the folder of their environment.
     pub name: &'static str,
-    /// What they are for, as a person is told.
+    /// What they are for, for messages.
     pub purpose: &'static str,
     /// The pinned versions, as pip reads them.
     pub requirements: &'static str,
@@ -28,7 +28,7 @@ pub struct Packages {
 /// MuJoCo, Drake and Exudyn.
 pub const SIMULATORS: Packages = Packages {
     name: "simulators",
-    purpose: "to make recordings that nobody here tuned",
+    purpose: "to simulate cases with software of other authors",
     requirements: include_str!("../simulators/requirements.txt"),
     scripts: &[
         ("protocol.py", include_str!("../simulators/protocol.py")),
@@ -39,14 +39,14 @@ pub const SIMULATORS: Packages = Packages {
 };
 
 /// PySINDy and SysIdentPy.
-pub const RIVALS: Packages = Packages {
-    name: "rivals",
-    purpose: "to see what others find in the same recordings",
-    requirements: include_str!("../rivals/requirements.txt"),
+pub const BASELINES: Packages = Packages {
+    name: "baselines",
+    purpose: "to run published identification packages on the same recordings",
+    requirements: include_str!("../baselines/requirements.txt"),
     scripts: &[
-        ("signals.py", include_str!("../rivals/signals.py")),
-        ("pysindy.py", include_str!("../rivals/pysindy.py")),
-        ("sysidentpy.py", include_str!("../rivals/sysidentpy.py")),
+        ("signals.py", include_str!("../baselines/signals.py")),
+        ("pysindy.py", include_str!("../baselines/pysindy.py")),
+        ("sysidentpy.py", include_str!("../baselines/sysidentpy.py")),
     ],
 };
 
@@ -104,7 +104,7 @@ impl Python {
 /// # Errors
 /// It has not.
 pub fn find(home: &Path, packages: &Packages) -> Result<Python, Missing> {
-    let place = Place::new(home, packages);
+    let place = EnvironmentFolder::new(home, packages);
     place.ready().ok_or_else(|| place.missing("they have not been set up"))
 }
 
@@ -113,7 +113,7 @@ pub fn find(home: &Path, packages: &Packages) -> Result<Python, Missing> {
 /// # Errors
 /// There is no Python, the packages cannot be had, or [`NO_INSTALL`] is set.
 pub fn set_up(home: &Path, packages: &Packages) -> Result<Python, Missing> {
-    let place = Place::new(home, packages);
+    let place = EnvironmentFolder::new(home, packages);
     if let Some(ready) = place.ready() {
         return Ok(ready);
     }
@@ -129,12 +129,12 @@ pub fn set_up(home: &Path, packages: &Packages) -> Result<Python, Missing> {
 }
 
 /// Where the environment of some packages is.
-struct Place<'a> {
+struct EnvironmentFolder<'a> {
     packages: &'a Packages,
     folder: PathBuf,
 }
 
-impl<'a> Place<'a> {
+impl<'a> EnvironmentFolder<'a> {
     fn new(home: &Path, packages: &'a Packages) -> Self {
         let folder = home.join(packages.name);
         // A child runs in a folder of its own choice.
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn what_is_pinned_otherwise_is_not_taken() {
         let home = std::env::temp_dir().join(format!("palpate-old-python-{}", std::process::id()));
-        let place = Place::new(&home, &SIMULATORS);
+        let place = EnvironmentFolder::new(&home, &SIMULATORS);
         fs::create_dir_all(place.python().interpreter.parent().unwrap()).unwrap();
         fs::write(place.python().interpreter, "").unwrap();
         fs::write(place.marker(), "mujoco==1.0.0\n").unwrap();

@@ -3,12 +3,12 @@
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
-use crate::chance::Chance;
+use crate::rng::CaseRng;
 
 /// How good the sensors are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Grade {
+pub enum SensorGrade {
     /// 0.1 mm; 0.05 N with 0.02 N of noise.
     Coarse,
     /// 5 um; 0.005 N with 0.01 N of noise.
@@ -29,10 +29,10 @@ pub struct Sensors {
 impl Sensors {
     /// Of `grade`, at the size of a bench.
     #[must_use]
-    pub fn new(grade: Grade) -> Self {
+    pub fn new(grade: SensorGrade) -> Self {
         match grade {
-            Grade::Coarse => Self { position_step: 1e-4, force_step: 0.05, force_noise: 0.02 },
-            Grade::Fine => Self { position_step: 5e-6, force_step: 0.005, force_noise: 0.01 },
+            SensorGrade::Coarse => Self { position_step: 1e-4, force_step: 0.05, force_noise: 0.02 },
+            SensorGrade::Fine => Self { position_step: 5e-6, force_step: 0.005, force_noise: 0.01 },
         }
     }
 
@@ -43,8 +43,8 @@ impl Sensors {
     }
 
     /// A reading of `force`, N.
-    pub fn read_force(&self, force: f64, chance: &mut Chance) -> f64 {
-        let noise: f64 = StandardNormal.sample(chance);
+    pub fn read_force(&self, force: f64, rng: &mut CaseRng) -> f64 {
+        let noise: f64 = StandardNormal.sample(rng);
         self.force_step * ((force + self.force_noise * noise) / self.force_step).round() + 0.0
     }
 }

@@ -1,31 +1,34 @@
-//! How much of an effect the nominal physics cannot take up by values of its own.
+//! Strength of an effect: the RMS residual that the refitted nominal model leaves of the noise-free motion.
 
-use crate::nominal::Nominal;
+use crate::closed_loop::{SAMPLE_PERIOD_S, SimulatedTrial};
+use crate::nominal::NominalParameters;
 use crate::sensors::Sensors;
-use crate::simulate::{PERIOD, Track};
 
 /// RMS residuals of the best nominal fit to the true, noise-free motion, N.
 #[derive(Debug, Clone, Copy)]
-pub struct Residual {
+pub struct NominalResidual {
     /// Of the force, fitted by K, B and surface.
     pub force: f64,
     /// Of the effort less the measured force, fitted by m and b, in means over as long as the encoder needs.
     pub effort: f64,
 }
 
-/// Fits all `tracks` at once, as `sensors` show them.
+/// Fits all `trials` at once, as `sensors` show them.
 #[must_use]
-pub fn residual(tracks: &[Track], nominal: &Nominal, sensors: &Sensors) -> Residual {
-    Residual { force: contact(tracks, nominal), effort: drive(tracks, seen(nominal.mass, sensors)) }
+pub fn residual(trials: &[SimulatedTrial], nominal: &NominalParameters, sensors: &Sensors) -> NominalResidual {
+    NominalResidual {
+        force: contact_residual(trials, nominal),
+        effort: drive_residual(trials, averaging_rows(nominal.mass, sensors)),
+    }
 }
 
 /// Sums of products, for a least-squares fit of N values.
-struct Normal<const N: usize> {
+struct NormalEquations<const N: usize> {
     matrix: [[f64; N]; N],
     right: [f64; N],
 }
 
-impl<const N: usize> Normal<N> {
+impl<const N: usize> NormalEquations<N> {
     fn new() -> Self {
         Self { matrix: [[0.0; N]; N], right: [0.0; N] }
     }
@@ -66,10 +69,10 @@ impl<const N: usize> Normal<N> {
 ///
 /// A parabola through N readings over T = N P, each off by `sigma = step / sqrt(12)`, has an acceleration that is off by
 /// `sqrt(720 / N) sigma / T^2`; at T that is, times the mass, as much as the force sensor's floor.
-fn seen(mass: f64, sensors: &Sensors) -> usize {
+fn averaging_rows(mass: f64, sensors: &Sensors) -> usize {
     let sigma = sensors.position_step / 12.0_f64.sqrt();
-    let seconds = (mass * sigma * (720.0 * PERIOD).sqrt() / sensors.floor()).powf(0.4);
-    (seconds / PERIOD).ceil() as usize
+    let seconds = (mass * sigma * (720.0 * SAMPLE_PERIOD_S).sqrt() / sensors.floor()).powf(0.4);
+    (seconds / SAMPLE_PERIOD_S).ceil() as usize
 }
 
 /// How much each of `rows` counts in a mean. The acceleration of a parabola through positions is the mean of the true one
@@ -80,39 +83,43 @@ fn weights(rows: usize) -> Vec<f64> {
     (0..rows).map(|row| at(row) / sum).collect()
 }
 
-fn drive(tracks: &[Track], seen: usize) -> f64 {
-    let weights = weights(seen);
-    let held = |values: &[f64]| values.iter().zip(&weights).map(|(value, weight)| weight * value).sum::<f64>();
+fn drive_residual(trials: &[SimulatedTrial], rows: usize) -> f64 {
+    let weights = weights(rows);
+    let mean = |values: &[f64]| values.iter().zip(&weights).map(|(value, weight)| weight * value).sum::<f64>();
     // From one row to the next, as the effort holds until then.
     let rate = |values: &[f64]| {
-        values.windows(2).zip(&weights).map(|(pair, weight)| weight * (pair[1] - pair[0]) / PERIOD).sum::<f64>()
+        values
+            .windows(2)
+            .zip(&weights)
+            .map(|(pair, weight)| weight * (pair[1] - pair[0]) / SAMPLE_PERIOD_S)
+            .sum::<f64>()
     };
     let rows = || {
-        tracks.iter().flat_map(|track| {
-            (0..track.effort.len().saturating_sub(seen)).step_by((seen / 4).max(1)).map(|row| {
-                let regressor = [rate(&track.velocity[row..]), rate(&track.position[row..])];
-                (regressor, held(&track.effort[row..]) - held(&track.force_mean[row..]))
+        trials.iter().flat_map(|trial| {
+            (0..trial.effort.len().saturating_sub(rows)).step_by((rows / 4).max(1)).map(|row| {
+                let regressor = [rate(&trial.velocity[row..]), rate(&trial.position[row..])];
+                (regressor, mean(&trial.effort[row..]) - mean(&trial.force_mean[row..]))
             })
         })
     };
-    let mut normal = Normal::new();
+    let mut normal = NormalEquations::new();
     rows().for_each(|(regressor, wanted)| normal.add(regressor, wanted));
     let [m, b] = normal.solve();
     rms(rows().map(|([a, v], wanted)| wanted - m * a - b * v))
 }
 
 /// K, B and the surface.
-type Values = [f64; 3];
+type ContactValues = [f64; 3];
 
-fn contact(tracks: &[Track], nominal: &Nominal) -> f64 {
+fn contact_residual(trials: &[SimulatedTrial], nominal: &NominalParameters) -> f64 {
     let mut values = [nominal.stiffness, nominal.damping, nominal.surface];
-    let mut best = misfit(tracks, nominal, values);
+    let mut best = residual_rms(trials, nominal, values);
     for _ in 0..12 {
-        let step = descend(tracks, nominal, values);
+        let step = gauss_newton_step(trials, nominal, values);
         let mut share = 1.0;
         let better = loop {
             let trial = std::array::from_fn(|at| values[at] + share * step[at]);
-            let found = misfit(tracks, nominal, trial);
+            let found = residual_rms(trials, nominal, trial);
             if found < best {
                 break Some((trial, found));
             }
@@ -131,7 +138,7 @@ fn contact(tracks: &[Track], nominal: &Nominal) -> f64 {
     best
 }
 
-fn model(nominal: &Nominal, [k, b, surface]: Values, x: f64, v: f64) -> f64 {
+fn model(nominal: &NominalParameters, [k, b, surface]: ContactValues, x: f64, v: f64) -> f64 {
     let p = x - surface;
     let force = k * p + b * v;
     if nominal.bilateral {
@@ -143,31 +150,31 @@ fn model(nominal: &Nominal, [k, b, surface]: Values, x: f64, v: f64) -> f64 {
     }
 }
 
-fn samples(tracks: &[Track]) -> impl Iterator<Item = (f64, f64, f64)> {
-    tracks.iter().flat_map(|track| {
-        let motion = track.position.iter().zip(&track.velocity);
-        motion.zip(&track.force).map(|((x, v), force)| (*x, *v, *force))
+fn samples(trials: &[SimulatedTrial]) -> impl Iterator<Item = (f64, f64, f64)> {
+    trials.iter().flat_map(|trial| {
+        let motion = trial.position.iter().zip(&trial.velocity);
+        motion.zip(&trial.force).map(|((x, v), force)| (*x, *v, *force))
     })
 }
 
-/// The row at which the tool crosses the surface: on which side of the step in the damper's force it falls is a matter of
+/// The row at which the tool is_at_onset the surface: on which side of the step in the damper's force it falls is a matter of
 /// micrometres and tells nothing.
-fn crosses(nominal: &Nominal, surface: f64, x: f64, v: f64) -> bool {
-    !nominal.bilateral && (x - surface).abs() < v.abs() * PERIOD
+fn is_at_onset(nominal: &NominalParameters, surface: f64, x: f64, v: f64) -> bool {
+    !nominal.bilateral && (x - surface).abs() < v.abs() * SAMPLE_PERIOD_S
 }
 
-fn misfit(tracks: &[Track], nominal: &Nominal, values: Values) -> f64 {
-    let told = samples(tracks).filter(|(x, v, _)| !crosses(nominal, values[2], *x, *v));
-    rms(told.map(|(x, v, force)| force - model(nominal, values, x, v)))
+fn residual_rms(trials: &[SimulatedTrial], nominal: &NominalParameters, values: ContactValues) -> f64 {
+    let scored = samples(trials).filter(|(x, v, _)| !is_at_onset(nominal, values[2], *x, *v));
+    rms(scored.map(|(x, v, force)| force - model(nominal, values, x, v)))
 }
 
 /// A Gauss-Newton step on the samples where the model touches.
-fn descend(tracks: &[Track], nominal: &Nominal, values: Values) -> Values {
+fn gauss_newton_step(trials: &[SimulatedTrial], nominal: &NominalParameters, values: ContactValues) -> ContactValues {
     let [k, _, surface] = values;
-    let mut normal = Normal::new();
-    for (x, v, force) in samples(tracks) {
+    let mut normal = NormalEquations::new();
+    for (x, v, force) in samples(trials) {
         let modelled = model(nominal, values, x, v);
-        if modelled != 0.0 && !crosses(nominal, surface, x, v) {
+        if modelled != 0.0 && !is_at_onset(nominal, surface, x, v) {
             normal.add([x - surface, v, -k], force - modelled);
         }
     }

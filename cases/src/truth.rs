@@ -1,18 +1,18 @@
-//! The answers: what a case conceals. In the units of the case, and never among its files.
+//! The true answers of a case, in the units of the case. They are never written among its files.
 
 use serde::{Deserialize, Serialize};
 
-use crate::effect::name::Acts;
-use crate::nominal::Nominal;
-use crate::reference;
+use crate::effect::registry::ActsIn;
+use crate::excitation::Excitation;
+use crate::nominal::NominalParameters;
 use crate::scale::Scale;
-use crate::sensors::{Grade, Sensors};
-use crate::world::Source;
+use crate::sensors::{SensorGrade, Sensors};
+use crate::simulator::SimulatorKind;
 
-/// What a case is about.
+/// How many effects a case conceals, and of which list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum CaseKind {
     /// Nothing is concealed.
     None,
     /// One effect of the list.
@@ -25,7 +25,7 @@ pub enum Kind {
 
 /// A true value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TrueValue {
+pub struct TrueParameter {
     /// What it is.
     pub name: &'static str,
     /// In the units of the case.
@@ -40,56 +40,57 @@ pub struct TrueEffect {
     /// By the list, or a name of its own outside of it.
     pub name: &'static str,
     /// Where it acts.
-    pub acts_in: Acts,
+    pub acts_in: ActsIn,
     /// Whether the list holds it.
     pub listed: bool,
     /// The form of its equation.
     pub form: &'static str,
     /// Its values.
-    pub parameters: Vec<TrueValue>,
+    pub parameters: Vec<TrueParameter>,
     /// The strength that was asked for.
     pub strength_asked: f64,
     /// The strength that it has, alone: the larger of the two below where the effort is recorded.
     pub strength: f64,
-    /// Its residual in the force over the floor.
+    /// RMS residual of the refitted nominal model in the force, over the RMS error of a force reading.
     pub in_force: f64,
-    /// Its residual in the balance of the drive over the floor.
+    /// The same in the force balance of the drive.
     pub in_effort: f64,
 }
 
 /// The answers to one case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Truth {
-    /// Whose simulation made it.
-    pub source: Source,
-    /// Of all cases.
+    /// The simulator that made it.
+    pub source: SimulatorKind,
+    /// Seed of the run.
     pub seed: u64,
-    /// Of this one.
+    /// Index of the case within the run.
     pub index: u64,
-    /// What it is about.
-    pub kind: Kind,
+    /// How many effects, and of which list.
+    pub kind: CaseKind,
     /// What it conceals.
     pub effects: Vec<TrueEffect>,
-    /// The strength of all effects together.
+    /// Strength of all effects together.
     pub strength: f64,
-    /// Error of a reading of the force, RMS.
+    /// RMS error of a force reading.
     pub floor: f64,
     /// Its unit.
     pub floor_unit: &'static str,
     /// The columns besides time.
     pub channels: Vec<&'static str>,
     /// Coarse or fine.
-    pub grade: Grade,
-    /// The sensors' figures.
+    pub grade: SensorGrade,
+    /// Resolution and noise of the sensors.
     pub sensors: Sensors,
     /// Whether the rig file states them.
     pub sensors_stated: bool,
     /// The true values of the nominal physics.
-    pub nominal: Nominal,
+    pub nominal: NominalParameters,
     /// The values that the rig file states.
-    pub stated: Nominal,
-    /// Rich or poor.
-    pub reference: reference::Kind,
+    pub stated: NominalParameters,
+    /// Rich or poor excitation.
+    #[serde(rename = "reference")]
+    pub excitation: Excitation,
     /// Size and coordinate.
     pub scale: Scale,
 }

@@ -2,82 +2,82 @@
 
 use std::collections::BTreeSet;
 
-use palpate_cases::chance::{Stream, stream};
-use palpate_cases::effect::name::{ALL, Acts, Known};
-use palpate_cases::plan::Plan;
-use palpate_cases::reference::Kind;
-use palpate_cases::sensors::Grade;
-use palpate_cases::world::Offer;
-use palpate_cases::{Case, What, Wish, draw};
+use palpate_cases::case_spec::CaseSpec;
+use palpate_cases::effect::registry::{ALL, ActsIn, EffectInfo};
+use palpate_cases::excitation::Excitation;
+use palpate_cases::rng::{Stream, stream};
+use palpate_cases::sensors::SensorGrade;
+use palpate_cases::simulator::SupportedEffects;
+use palpate_cases::{Case, CaseRequest, EffectSelection, draw};
 
-fn wish(what: What) -> Wish {
-    Wish {
-        what: Some(what),
-        sensors: Some(Grade::Fine),
-        reference: Some(Kind::Rich),
+fn request(selection: EffectSelection) -> CaseRequest {
+    CaseRequest {
+        selection: Some(selection),
+        sensors: Some(SensorGrade::Fine),
+        excitation: Some(Excitation::Rich),
         effort: Some(true),
         bilateral: Some(false),
-        ..Wish::default()
+        ..CaseRequest::default()
     }
 }
 
-fn all_reach(strength: f64, which: impl Fn(&Known) -> bool) {
+fn all_reach(strength: f64, which: impl Fn(&EffectInfo) -> bool) {
     for known in ALL.iter().filter(|known| which(known)) {
-        let case = draw(21, 2, &wish(What::single(known.name, Some(strength)))).unwrap();
+        let case = draw(21, 2, &request(EffectSelection::single(known.name, Some(strength)))).unwrap();
         let found = &case.truth.effects[0];
         assert_eq!(found.name, known.name);
         assert!((found.strength / strength - 1.0).abs() < 0.05, "{}: {}", known.name, found.strength);
         assert_eq!(found.strength, case.truth.strength);
         assert!(found.parameters.iter().all(|parameter| parameter.value.is_finite()));
-        match known.acts {
+        match known.acts_in {
             // What acts in the drive does not show in the contact.
-            Acts::Drive => assert!(found.in_force < 0.02 * strength, "{}: {}", known.name, found.in_force),
-            Acts::Contact => assert!(found.in_effort < 0.02 * strength, "{}: {}", known.name, found.in_effort),
-            Acts::Sensor => {}
+            ActsIn::Drive => assert!(found.in_force < 0.02 * strength, "{}: {}", known.name, found.in_force),
+            ActsIn::Contact => assert!(found.in_effort < 0.02 * strength, "{}: {}", known.name, found.in_effort),
+            ActsIn::Sensor => {}
         }
     }
 }
 
 #[test]
 fn every_effect_of_the_contact_reaches_its_strength() {
-    all_reach(2.0, |known| known.acts == Acts::Contact);
+    all_reach(2.0, |known| known.acts_in == ActsIn::Contact);
 }
 
 #[test]
 fn every_effect_of_the_drive_reaches_its_strength() {
-    all_reach(8.0, |known| known.acts == Acts::Drive);
+    all_reach(8.0, |known| known.acts_in == ActsIn::Drive);
 }
 
 #[test]
 fn every_effect_of_the_sensor_reaches_its_strength() {
-    all_reach(2.0, |known| known.acts == Acts::Sensor);
+    all_reach(2.0, |known| known.acts_in == ActsIn::Sensor);
 }
 
 #[test]
 fn the_list_is_the_one_that_was_agreed_on() {
-    let count = |acts| ALL.iter().filter(|known| known.listed && known.acts == acts).count();
-    assert_eq!((count(Acts::Contact), count(Acts::Drive), count(Acts::Sensor)), (12, 9, 8));
+    let count = |acts| ALL.iter().filter(|known| known.listed && known.acts_in == acts).count();
+    assert_eq!((count(ActsIn::Contact), count(ActsIn::Drive), count(ActsIn::Sensor)), (12, 9, 8));
     assert!(ALL.iter().filter(|known| !known.listed).count() >= 8);
     assert_eq!(ALL.iter().map(|known| known.name).collect::<BTreeSet<_>>().len(), ALL.len());
 }
 
 #[test]
 fn no_strength_is_nothing_to_the_bit() {
-    let nothing = draw(22, 0, &wish(What::Nothing)).unwrap();
+    let nothing = draw(22, 0, &request(EffectSelection::Nothing)).unwrap();
     assert!(nothing.truth.strength < 1e-2, "{}", nothing.truth.strength);
     for name in ["adhesion", "backlash", "effort_lag", "channel_delay", "thermal_wander"] {
-        let none = draw(22, 0, &wish(What::single(name, Some(0.0)))).unwrap();
+        let none = draw(22, 0, &request(EffectSelection::single(name, Some(0.0)))).unwrap();
         assert_eq!(none.trials, nothing.trials, "{name}");
         assert_eq!(none.rig, nothing.rig, "{name}");
     }
     let names = Some(["backlash".to_owned(), "adhesion".to_owned()]);
-    let pair = draw(22, 0, &wish(What::Pair { names, strength: Some(0.0) })).unwrap();
+    let pair = draw(22, 0, &request(EffectSelection::Pair { names, strength: Some(0.0) })).unwrap();
     assert_eq!(pair.trials, nothing.trials);
 }
 
 #[test]
 fn a_case_is_its_seed_and_index() {
-    let free = Wish::default();
+    let free = CaseRequest::default();
     let one = draw(23, 4, &free).unwrap();
     assert_eq!(one, draw(23, 4, &free).unwrap());
     assert_ne!(one.trials, draw(23, 5, &free).unwrap().trials);
@@ -103,8 +103,12 @@ fn the_files_are_as_agreed_and_betray_nothing() {
         (false, "t_s,position_m,force_N,effort_N,reference_m"),
         (true, "t_s,position_rad,torque_Nm,effort_Nm,reference_rad"),
     ] {
-        let wish = Wish { rotary: Some(rotary), bench: Some(true), ..wish(What::single("adhesion", Some(3.0))) };
-        let all = files(&draw(25, 0, &wish).unwrap(), header);
+        let request = CaseRequest {
+            rotary: Some(rotary),
+            bench: Some(true),
+            ..request(EffectSelection::single("adhesion", Some(3.0)))
+        };
+        let all = files(&draw(25, 0, &request).unwrap(), header);
         let names: Vec<_> = all.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["rig.toml", "trial-1.csv", "trial-2.csv"]);
         assert!(!all.iter().any(|(_, text)| text.contains("adhesion")));
@@ -125,29 +129,31 @@ fn the_files_are_as_agreed_and_betray_nothing() {
 
 #[test]
 fn what_is_not_recorded_is_in_no_file() {
-    let wish = Wish { effort: Some(false), rotary: Some(false), ..wish(What::Nothing) };
-    let all = files(&draw(26, 0, &wish).unwrap(), "no-effort");
+    let request = CaseRequest { effort: Some(false), rotary: Some(false), ..request(EffectSelection::Nothing) };
+    let all = files(&draw(26, 0, &request).unwrap(), "no-effort");
     assert!(!all[0].1.contains("[drive]"));
     assert!(all[1].1.starts_with("t_s,position_m,force_N,reference_m\n"));
 }
 
 #[test]
 fn what_is_drawn_can_be_seen() {
-    let chance = &mut stream(28, 0, Stream::Plan);
+    let rng = &mut stream(28, 0, Stream::Spec);
     for _ in 0..300 {
-        let pair = What::Pair { names: None, strength: None };
-        let blind = Wish { what: Some(pair.clone()), effort: Some(false), ..Wish::default() };
-        let effects = Plan::draw(&blind, Offer::OWN, chance).unwrap().effects;
+        let pair = EffectSelection::Pair { names: None, strength: None };
+        let blind = CaseRequest { selection: Some(pair.clone()), effort: Some(false), ..CaseRequest::default() };
+        let effects = CaseSpec::draw(&blind, SupportedEffects::OWN, rng).unwrap().effects;
         assert!(effects.iter().all(|(known, strength)| !known.needs_effort && (0.1..=10.0).contains(strength)));
-        let glued = Wish { what: Some(pair), bilateral: Some(true), ..Wish::default() };
-        let effects = Plan::draw(&glued, Offer::OWN, chance).unwrap().effects;
+        let glued = CaseRequest { selection: Some(pair), bilateral: Some(true), ..CaseRequest::default() };
+        let effects = CaseSpec::draw(&glued, SupportedEffects::OWN, rng).unwrap().effects;
         assert!(effects.iter().all(|(known, _)| known.bilateral) && effects[0].0 != effects[1].0);
     }
 }
 
 #[test]
 fn a_wish_that_hides_its_own_effect_is_refused() {
-    let hidden = Wish { effort: Some(false), ..wish(What::single("coulomb_friction", None)) };
+    let hidden = CaseRequest { effort: Some(false), ..request(EffectSelection::single("coulomb_friction", None)) };
     assert!(draw(27, 0, &hidden).unwrap_err().to_string().contains("coulomb_friction"));
-    assert!(draw(27, 0, &wish(What::single("no_such", None))).unwrap_err().to_string().contains("no_such"));
+    assert!(
+        draw(27, 0, &request(EffectSelection::single("no_such", None))).unwrap_err().to_string().contains("no_such")
+    );
 }

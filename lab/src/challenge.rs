@@ -1,28 +1,28 @@
-//! `palpate challenge`: the diagnosis is put to recordings whose missing effect is concealed from it.
+//! `palpate challenge`: a blind test of the diagnosis on recordings whose missing effect is concealed from it.
 //!
-//! Cases are drawn from a seed and written as plain recordings, each in a folder of its own; the answers are committed to by
-//! a SHA-256 before the first diagnosis; each case is diagnosed by the very command that a user runs; then the seal is
-//! opened and the answers are scored. The generator of the cases shares no code of an effect with the diagnosis, and half of
-//! the whole list is played by simulators that nobody here wrote. Real recordings, where there are any, pass through the same
-//! protocol beside them: what is known of them is the concealed answer.
+//! Cases are drawn from a seed and written as plain recordings, each in a folder of its own. A SHA-256 over the true answers is
+//! published before the first diagnosis; each case is diagnosed by the command that a user runs; then the answers are checked
+//! against the commitment and scored. The case generator shares no code of an effect with the diagnosis, and half of the
+//! list is simulated by MuJoCo, Drake and Exudyn. Real recordings pass through the same protocol: what their makers report of
+//! them is the concealed answer.
 
-pub mod aim;
+pub mod baselines;
 pub mod bic;
+pub mod binomial;
+pub mod case_files;
+pub mod case_list;
+pub mod case_score;
+pub mod challenge_score;
 mod command;
-pub mod draft;
-pub mod examination;
-pub mod files;
-pub mod interval;
+pub mod commitment;
+pub mod diagnosis_json;
+pub mod generate;
 pub mod page;
-pub mod plan;
+pub mod parameter_score;
 mod protocol;
-pub mod recorded;
-pub mod rival;
-pub mod row;
-pub mod score;
-pub mod seal;
+pub mod recordings;
+pub mod run_diagnosis;
 pub mod summary;
-pub mod told;
-pub mod values;
+pub mod targets;
 
 pub use command::{ChallengeArgs, run};

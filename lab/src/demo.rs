@@ -10,7 +10,7 @@ use crate::device::{Device, project};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::effects;
 use crate::recording::Recording;
-use crate::recordings;
+use crate::recordings_folder;
 use crate::replay::{Options, Outputs, Place, Replayed, Runner, replay};
 use crate::rig::{Rig, Sensors};
 use crate::simulate::{self, SimulateArgs};
@@ -43,22 +43,22 @@ pub fn run() -> Result<()> {
     let mut pages = vec![show(device.as_ref(), &bench, &trial, &out.join("bench"))?];
 
     println!("3. A real recording: a probe sinks into a polymer gel, nanonewtons on micrometres");
-    let real = recordings::folder().map(|folder| folder.join("afm_soft_contact").join("creep_polymergel.csv"));
+    let real = recordings_folder::folder().map(|folder| folder.join("afm_soft_contact").join("creep_polymergel.csv"));
     match real.filter(|path| path.is_file()) {
         Some(trial) => pages.push(show(device.as_ref(), &rigs.join("afm_creep_gel.toml"), &trial, &out.join("gel"))?),
-        None => left_out.push(format!("the real recording: there is none here; {}", recordings::ADVICE)),
+        None => left_out.push(format!("the real recording: there is none here; {}", recordings_folder::ADVICE)),
     }
 
     println!("4. What the simulation leaves out: a bench whose contact relaxes, which the rig file does not know");
     pages.push(concealed(&bench, &out.join("diagnosis"))?);
     println!("5. The same of a real recording: an arm with a weight and dry friction, held against a bare inertia");
-    let arm = recordings::folder().map(|folder| folder.join("dfki_pendulum"));
+    let arm = recordings_folder::folder().map(|folder| folder.join("dfki_pendulum"));
     match arm.filter(|folder| folder.is_dir()) {
         Some(folder) => {
             let trials = ["ddp.csv", "dircol.csv"].map(|name| folder.join(name));
             pages.push(explained(&rigs.join("dfki_pendulum.toml"), &trials, &out.join("pendulum"))?);
         }
-        None => left_out.push(format!("the arm: there is none here; {}", recordings::ADVICE)),
+        None => left_out.push(format!("the arm: there is none here; {}", recordings_folder::ADVICE)),
     }
 
     println!("Pages to open in a browser:");

@@ -16,7 +16,7 @@ pub mod page;
 pub mod plant;
 pub mod profile;
 pub mod recording;
-pub mod recordings;
+pub mod recordings_folder;
 pub mod reference;
 pub mod replay;
 pub mod reproduce;

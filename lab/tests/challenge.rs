@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
-use palpate_lab::challenge::recorded;
-use palpate_lab::challenge::score::Challenge;
+use palpate_lab::challenge::challenge_score::ChallengeScore;
+use palpate_lab::challenge::recordings;
 use palpate_lab::challenge::summary;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -121,7 +121,7 @@ fn no_case_is_a_fault_of_the_command_line() {
 #[test]
 fn the_page_of_the_diagnosis_shows_the_run_of_its_aims() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let run: Challenge = serde_json::from_value(json(&project.join("docs/aims.json"))).unwrap();
+    let run: ChallengeScore = serde_json::from_value(json(&project.join("docs/aims.json"))).unwrap();
     let page = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
     assert!(page.contains(summary::table(&run).trim()), "the table is of another run");
 }
@@ -130,7 +130,7 @@ fn the_page_of_the_diagnosis_shows_the_run_of_its_aims() {
 fn the_readme_shows_the_published_score() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let published = json(&project.join("docs/challenge.json"));
-    let challenge: Challenge = serde_json::from_value(published).unwrap();
+    let challenge: ChallengeScore = serde_json::from_value(published).unwrap();
     let readme = fs::read_to_string(project.join("README.md")).unwrap();
     let table = summary::table(&challenge);
     assert_eq!(summary::replaced(&readme, &table).as_deref(), Some(readme.as_str()), "made by hand?");
@@ -140,7 +140,7 @@ fn the_readme_shows_the_published_score() {
     if let Some(real) = &challenge.recorded {
         let diagnosis = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
         assert_eq!(
-            summary::replaced(&diagnosis, &recorded::table::section(real)).as_deref(),
+            summary::replaced(&diagnosis, &recordings::table::section(real)).as_deref(),
             Some(diagnosis.as_str()),
             "made by hand?"
         );

@@ -12,7 +12,7 @@ use palpate::{
 };
 use palpate_lab::device::{Device, project};
 use palpate_lab::recording::Recording;
-use palpate_lab::recordings;
+use palpate_lab::recordings_folder;
 use palpate_lab::replay::{Options, Plan};
 use palpate_lab::rig::{Contact, Rig};
 use palpate_lab::simulate;
@@ -87,8 +87,8 @@ fn on_a_simulated_bench_every_estimate_has_the_same_bits() {
 #[test]
 fn on_every_real_recording_every_estimate_has_the_same_bits() {
     let Some(device) = device() else { return };
-    let Some(folder) = recordings::folder() else {
-        eprintln!("left out: no real recordings; {}", recordings::ADVICE);
+    let Some(folder) = recordings_folder::folder() else {
+        eprintln!("left out: no real recordings; {}", recordings_folder::ADVICE);
         return;
     };
     let (mut trials, mut samples) = (0, 0);

@@ -13,13 +13,13 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use assert_cmd::Command;
-use palpate_lab::challenge::recorded::judge::{DRY, leaves_friction_open, named, rivals};
-use palpate_lab::challenge::recorded::row::{Recorded, Row};
-use palpate_lab::challenge::score::Challenge;
-use palpate_lab::challenge::told::Told;
+use palpate_lab::challenge::challenge_score::ChallengeScore;
+use palpate_lab::challenge::diagnosis_json::DiagnosisJson;
+use palpate_lab::challenge::recordings::grade::{DRY, alternatives, leaves_friction_open, named};
+use palpate_lab::challenge::recordings::specimen_score::{RecordingScores, SpecimenScore};
 use palpate_lab::diagnose::diagnose;
 use palpate_lab::recording::Recording;
-use palpate_lab::recordings::{ADVICE, VARIABLE, folder};
+use palpate_lab::recordings_folder::{ADVICE, VARIABLE, folder};
 use palpate_lab::rig::Rig;
 use tempfile::TempDir;
 
@@ -33,21 +33,21 @@ fn recordings() -> Option<PathBuf> {
 }
 
 /// What `palpate diagnose --rig lab/rigs/RIG.toml FILE` tells of one recording, `None` where there are none.
-fn told(rig: &str, file: &str) -> Option<Told> {
+fn diagnosis_of(rig: &str, file: &str) -> Option<DiagnosisJson> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("rigs").join(rig).with_extension("toml");
     let trial = recordings()?.join(file);
     let rig = Rig::read(&path).unwrap();
     let trial = Recording::read(&trial, &rig).unwrap();
     let found = diagnose(&rig, &path.display().to_string(), &[trial], &[], 1, &|_| ()).unwrap();
-    let told: Told = serde_json::from_value(serde_json::to_value(found.answer).unwrap()).unwrap();
-    println!("{file}: {} {:?}, rivals {:?}", told.verdict, named(&told), rivals(&told));
-    Some(told)
+    let diagnosis: DiagnosisJson = serde_json::from_value(serde_json::to_value(found.answer).unwrap()).unwrap();
+    println!("{file}: {} {:?}, alternatives {:?}", diagnosis.verdict, named(&diagnosis), alternatives(&diagnosis));
+    Some(diagnosis)
 }
 
 /// Asserts that `effects` are named in the recording.
 fn is_named(rig: &str, file: &str, effects: &[&str]) {
-    let Some(told) = told(rig, file) else { return };
-    let found = named(&told);
+    let Some(diagnosis) = diagnosis_of(rig, file) else { return };
+    let found = named(&diagnosis);
     for effect in effects {
         assert!(found.contains(effect), "{file}: {effect} is not among {found:?}");
     }
@@ -67,13 +67,13 @@ fn a_soft_sample_relaxes_and_stiffens() {
 /// Pressed and held, never let go: neither a slow sensor nor its zero shows, and what else bends the curve halves nothing.
 #[test]
 fn a_soft_sample_that_is_never_let_go_relaxes_and_stiffens_and_nothing_else() {
-    let Some(told) = told("tissue_s230515", "tissue_indentation/s230515_P002_laser_2.csv") else { return };
-    let mut found = named(&told);
+    let Some(diagnosis) = diagnosis_of("tissue_s230515", "tissue_indentation/s230515_P002_laser_2.csv") else { return };
+    let mut found = named(&diagnosis);
     found.retain(|name| *name != "unknown");
     found.sort_unstable();
     assert_eq!(found, ["nonlinear_stiffness", "stress_relaxation"]);
     assert!(
-        told.findings.iter().any(|finding| finding.text.contains("force_lag")),
+        diagnosis.findings.iter().any(|finding| finding.text.contains("force_lag")),
         "that a slow sensor would show the same"
     );
 }
@@ -91,9 +91,9 @@ fn a_gel_holds_on_to_the_tip() {
 /// At two constant speeds a damper makes the same loop as dry friction.
 #[test]
 fn a_piston_at_one_speed_each_way_does_not_decide_what_kind_of_friction_it_has() {
-    let Some(told) = told("pneumatic_seal", "pneumatic_seal_friction/O_ring_1bar.csv") else { return };
-    let claimed: Vec<_> = named(&told).into_iter().filter(|name| DRY.contains(name)).collect();
-    assert!(claimed.is_empty() || leaves_friction_open(&told), "{claimed:?} is claimed as if it were decided");
+    let Some(diagnosis) = diagnosis_of("pneumatic_seal", "pneumatic_seal_friction/O_ring_1bar.csv") else { return };
+    let claimed: Vec<_> = named(&diagnosis).into_iter().filter(|name| DRY.contains(name)).collect();
+    assert!(claimed.is_empty() || leaves_friction_open(&diagnosis), "{claimed:?} is claimed as if it were decided");
 }
 
 fn challenge(home: &Path, recordings: &str, root: Option<&Path>) -> Output {
@@ -120,33 +120,33 @@ fn three_specimens_are_sealed_diagnosed_opened_and_scored_on_trials_that_were_ke
     assert!(output.status.success(), "{said}");
     println!("{said}");
     let text = fs::read_to_string(home.path().join("score.json")).unwrap();
-    let score: Challenge = serde_json::from_str(&text).unwrap();
-    let recorded: Recorded = score.recorded.unwrap();
+    let score: ChallengeScore = serde_json::from_str(&text).unwrap();
+    let recorded: RecordingScores = score.recorded.unwrap();
 
     // Every answer and every trial kept back is sealed before any diagnosis, and the folder shows neither.
     let kept = home.path().join("kept");
     let sealed = fs::read_to_string(kept.join("answers.jsonl")).unwrap();
     assert_eq!(sealed.lines().count(), 3);
-    assert!(said.find(&score.sealed_sha256).unwrap() < said.find("unseen").unwrap(), "{said}");
+    assert!(said.find(&score.sealed_sha256).unwrap() < said.find("held out").unwrap(), "{said}");
     let switch = kept.join("recorded-00");
     let mut files: Vec<_> =
         fs::read_dir(&switch).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     files.sort();
     assert_eq!(files, ["diagnosis.json", "improved.toml", "rig.toml", "trial-1.csv"]);
     let [switch, diamond, soft] = recorded.rows.as_slice() else { panic!("{:?}", recorded.rows) };
-    assert!(switch.whole.is_some() && switch.unseen.is_none() && switch.scored.is_empty());
+    assert!(switch.no_split_reason.is_some() && switch.held_out.is_none() && switch.scored.is_empty());
     for (row, folder) in [(diamond, "recorded-01"), (soft, "recorded-02")] {
-        let [[taught], [scored]] = [&row.taught, &row.scored].map(Vec::as_slice) else { panic!("{row:?}") };
+        let [[training], [scored]] = [&row.training, &row.scored].map(Vec::as_slice) else { panic!("{row:?}") };
         let source = root.join(row.recording.split('/').next().unwrap());
-        assert_ne!(taught, scored);
-        assert_eq!(rows(&kept.join(folder), "trial-1.csv"), rows(&source, taught), "{}", row.recording);
+        assert_ne!(training, scored);
+        assert_eq!(rows(&kept.join(folder), "trial-1.csv"), rows(&source, training), "{}", row.recording);
     }
 
     // The score is that of its rows, and the page and the terminal show them.
     let page = fs::read_to_string(home.path().join("page.html")).unwrap();
-    let of = |is: fn(&Row) -> bool| recorded.rows.iter().filter(|row| is(row)).count();
+    let of = |is: fn(&SpecimenScore) -> bool| recorded.rows.iter().filter(|row| is(row)).count();
     assert_eq!((recorded.n, recorded.held_back), (3, of(|row| row.left().is_some())));
-    assert_eq!(recorded.rest_owned, of(Row::owns_rest));
+    assert_eq!(recorded.rest_owned, of(SpecimenScore::owns_rest));
     assert_eq!(recorded.named + recorded.owned + recorded.undecidable + recorded.wrong + recorded.missed, recorded.n);
     assert!(recorded.rows.iter().all(|row| page.contains(&row.recording) && said.contains(&row.words())), "{said}");
 

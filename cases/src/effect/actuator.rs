@@ -1,22 +1,9 @@
 //! What becomes of the effort before it acts: `effort_saturation`, `effort_lag`. The recording holds the command.
 
-use super::{Acting, Parameter, Scene, Shape, Sizes};
-use crate::physics::Physics;
+use super::{EffectParameter, EffectShape, NominalMotion, SimulatedEffect, SizeRange};
+use crate::physics::RigModel;
+use crate::physics::actuator::{EffortLimit, FirstOrderLag};
 use crate::scale::Unit;
-
-/// No effort beyond a limit.
-#[derive(Debug, Clone, Copy)]
-pub struct Clip {
-    limit: f64,
-}
-
-impl Clip {
-    /// What acts of `effort`, N.
-    #[must_use]
-    pub fn apply(&self, effort: f64) -> f64 {
-        effort.clamp(-self.limit, self.limit)
-    }
-}
 
 /// `effort_saturation`
 #[derive(Debug)]
@@ -27,8 +14,8 @@ pub struct EffortSaturation {
 impl EffortSaturation {
     /// Below the peak that the trials ask for.
     #[must_use]
-    pub fn draw(scene: &Scene) -> Self {
-        Self { peak: scene.effort }
+    pub fn draw(motion: &NominalMotion) -> Self {
+        Self { peak: motion.effort }
     }
 
     fn limit(&self, size: f64) -> f64 {
@@ -36,40 +23,23 @@ impl EffortSaturation {
     }
 }
 
-impl Shape for EffortSaturation {
+impl EffectShape for EffortSaturation {
     fn form(&self) -> &'static str {
         "clipping"
     }
 
-    fn sizes(&self) -> Sizes {
-        Sizes::new(0.3, 3.0)
+    fn size_range(&self) -> SizeRange {
+        SizeRange::new(0.3, 3.0)
     }
 
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![Parameter::new("limit", self.limit(size), Unit::Force)]
-    }
-}
-
-impl Acting for EffortSaturation {
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.clip = Some(Clip { limit: self.limit(size) });
+    fn parameters(&self, size: f64) -> Vec<EffectParameter> {
+        vec![EffectParameter::new("limit", self.limit(size), Unit::Force)]
     }
 }
 
-/// First order: `tau u' = command - u`.
-#[derive(Debug, Clone, Copy)]
-pub struct Lag {
-    time: f64,
-    effort: f64,
-}
-
-impl Lag {
-    /// The mean effort over the next step of `dt`, exact for a command that is held.
-    pub fn advance(&mut self, command: f64, dt: f64) -> f64 {
-        let gone = -(-dt / self.time).exp_m1();
-        let before = self.effort - command;
-        self.effort -= before * gone;
-        command + before * gone * self.time / dt
+impl SimulatedEffect for EffortSaturation {
+    fn apply(&self, size: f64, model: &mut RigModel) {
+        model.drive.effort_limit = Some(EffortLimit { limit: self.limit(size) });
     }
 }
 
@@ -77,23 +47,23 @@ impl Lag {
 #[derive(Debug)]
 pub struct EffortLag;
 
-impl Shape for EffortLag {
+impl EffectShape for EffortLag {
     fn form(&self) -> &'static str {
         "first order"
     }
 
-    fn sizes(&self) -> Sizes {
+    fn size_range(&self) -> SizeRange {
         // Half a sample is what the hold of the effort leaves open; beyond that a whole one.
-        Sizes { smallest: 1.5e-3, first: 2e-3, largest: 0.03 }
+        SizeRange { smallest: 1.5e-3, initial: 2e-3, largest: 0.03 }
     }
 
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![Parameter::new("time_constant", size, Unit::Time)]
+    fn parameters(&self, size: f64) -> Vec<EffectParameter> {
+        vec![EffectParameter::new("time_constant", size, Unit::Time)]
     }
 }
 
-impl Acting for EffortLag {
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.lag = Some(Lag { time: size, effort: 0.0 });
+impl SimulatedEffect for EffortLag {
+    fn apply(&self, size: f64, model: &mut RigModel) {
+        model.drive.effort_lag = Some(FirstOrderLag { time: size, effort: 0.0 });
     }
 }

@@ -2,68 +2,31 @@
 
 use rand::RngExt;
 
-use super::spots::Spots;
-use super::{Acting, Parameter, Scene, Shape, Sizes};
-use crate::chance::{Chance, log_uniform};
-use crate::physics::Physics;
+use super::{EffectParameter, EffectShape, NominalMotion, SimulatedEffect, SizeRange};
+use crate::physics::RigModel;
+use crate::physics::friction::StribeckCurve;
+use crate::rng::{CaseRng, log_uniform};
 use crate::scale::Unit;
-
-/// All dry friction of the drive.
-#[derive(Debug, Clone, Default)]
-pub struct Friction {
-    /// Against motion forward and backward, N.
-    pub coulomb: (f64, f64),
-    /// More while it is slow.
-    pub stribeck: Option<Stribeck>,
-    /// Per newton of contact force.
-    pub load: f64,
-    /// Places where it sticks.
-    pub spots: Option<Spots>,
-}
-
-/// `S exp(-(|v|/u)^n)` on top of what remains at speed.
-#[derive(Debug, Clone, Copy)]
-pub struct Stribeck {
-    kinetic: f64,
-    extra: f64,
-    speed: f64,
-    exponent: i32,
-}
-
-impl Friction {
-    /// Friction against motion forward and backward, N, at `velocity` under contact force `load`.
-    #[must_use]
-    pub fn brake(&self, position: f64, velocity: f64, load: f64) -> (f64, f64) {
-        let mut both = self.load * load.abs();
-        if let Some(Stribeck { kinetic, extra, speed, exponent }) = self.stribeck {
-            both += kinetic + extra * (-(velocity.abs() / speed).powi(exponent)).exp();
-        }
-        if let Some(spots) = &self.spots {
-            both += spots.at(position);
-        }
-        (self.coulomb.0 + both, self.coulomb.1 + both)
-    }
-}
 
 /// `coulomb_friction`
 #[derive(Debug)]
-pub struct Coulomb {
+pub struct CoulombFriction {
     asymmetry: f64,
     unit: f64,
 }
 
-impl Coulomb {
+impl CoulombFriction {
     /// Alike in both directions half of the time.
     #[must_use]
-    pub fn draw(scene: &Scene, chance: &mut Chance) -> Self {
-        let asymmetry = if chance.random_bool(0.5) { 0.0 } else { chance.random_range(-0.4..0.4) };
-        Self { asymmetry, unit: 0.02 * scene.effort }
+    pub fn draw(motion: &NominalMotion, rng: &mut CaseRng) -> Self {
+        let asymmetry = if rng.random_bool(0.5) { 0.0 } else { rng.random_range(-0.4..0.4) };
+        Self { asymmetry, unit: 0.02 * motion.effort }
     }
 
     /// Alike in both directions.
     #[must_use]
-    pub fn even(scene: &Scene) -> Self {
-        Self { asymmetry: 0.0, unit: 0.02 * scene.effort }
+    pub fn even(motion: &NominalMotion) -> Self {
+        Self { asymmetry: 0.0, unit: 0.02 * motion.effort }
     }
 
     fn levels(&self, size: f64) -> (f64, f64) {
@@ -72,103 +35,104 @@ impl Coulomb {
     }
 }
 
-impl Shape for Coulomb {
+impl EffectShape for CoulombFriction {
     fn form(&self) -> &'static str {
         if self.asymmetry == 0.0 { "set-valued" } else { "set-valued, asymmetric" }
     }
 
-    fn sizes(&self) -> Sizes {
-        Sizes::new(1.0, 25.0)
+    fn size_range(&self) -> SizeRange {
+        SizeRange::new(1.0, 25.0)
     }
 
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
+    fn parameters(&self, size: f64) -> Vec<EffectParameter> {
         let (forward, backward) = self.levels(size);
         vec![
-            Parameter::new("coulomb", 0.5 * (forward + backward), Unit::Force),
-            Parameter::new("coulomb_forward", forward, Unit::Force),
-            Parameter::new("coulomb_backward", backward, Unit::Force),
+            EffectParameter::new("coulomb", 0.5 * (forward + backward), Unit::Force),
+            EffectParameter::new("coulomb_forward", forward, Unit::Force),
+            EffectParameter::new("coulomb_backward", backward, Unit::Force),
         ]
     }
 }
 
-impl Acting for Coulomb {
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.friction.coulomb = self.levels(size);
+impl SimulatedEffect for CoulombFriction {
+    fn apply(&self, size: f64, model: &mut RigModel) {
+        model.drive.friction.coulomb = self.levels(size);
     }
 }
 
 /// `stribeck_friction`
 #[derive(Debug)]
-pub struct Slowing {
+pub struct StribeckFriction {
     ratio: f64,
     speed: f64,
     exponent: i32,
     unit: f64,
 }
 
-impl Slowing {
+impl StribeckFriction {
     /// At rest two to four times as much as at speed.
     #[must_use]
-    pub fn draw(scene: &Scene, chance: &mut Chance) -> Self {
-        let speed = scene.speed * log_uniform(chance, 0.05, 0.4);
-        let exponent = if chance.random_bool(0.5) { 1 } else { 2 };
-        Self { ratio: chance.random_range(0.25..0.5), speed, exponent, unit: 0.02 * scene.effort }
+    pub fn draw(motion: &NominalMotion, rng: &mut CaseRng) -> Self {
+        let speed = motion.speed * log_uniform(rng, 0.05, 0.4);
+        let exponent = if rng.random_bool(0.5) { 1 } else { 2 };
+        Self { ratio: rng.random_range(0.25..0.5), speed, exponent, unit: 0.02 * motion.effort }
     }
 
     /// Falling off as an exponential of the speed.
     #[must_use]
-    pub fn exponential(scene: &Scene, chance: &mut Chance) -> Self {
-        Self { exponent: 1, ..Self::draw(scene, chance) }
+    pub fn exponential(motion: &NominalMotion, rng: &mut CaseRng) -> Self {
+        Self { exponent: 1, ..Self::draw(motion, rng) }
     }
 }
 
-impl Shape for Slowing {
+impl EffectShape for StribeckFriction {
     fn form(&self) -> &'static str {
         if self.exponent == 1 { "set-valued, exponential" } else { "set-valued, Gaussian" }
     }
 
-    fn sizes(&self) -> Sizes {
-        Sizes::new(1.0, 30.0)
+    fn size_range(&self) -> SizeRange {
+        SizeRange::new(1.0, 30.0)
     }
 
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
+    fn parameters(&self, size: f64) -> Vec<EffectParameter> {
         let level = size * self.unit;
         vec![
-            Parameter::new("static", level, Unit::Force),
-            Parameter::new("coulomb", self.ratio * level, Unit::Force),
-            Parameter::new("stribeck_velocity", self.speed, Unit::Velocity),
+            EffectParameter::new("static", level, Unit::Force),
+            EffectParameter::new("coulomb", self.ratio * level, Unit::Force),
+            EffectParameter::new("stribeck_velocity", self.speed, Unit::Velocity),
         ]
     }
 }
 
-impl Acting for Slowing {
-    fn put(&self, size: f64, physics: &mut Physics) {
+impl SimulatedEffect for StribeckFriction {
+    fn apply(&self, size: f64, model: &mut RigModel) {
         let level = size * self.unit;
         let (kinetic, extra) = (self.ratio * level, (1.0 - self.ratio) * level);
-        physics.drive.friction.stribeck = Some(Stribeck { kinetic, extra, speed: self.speed, exponent: self.exponent });
+        model.drive.friction.stribeck =
+            Some(StribeckCurve { kinetic, extra, speed: self.speed, exponent: self.exponent });
     }
 }
 
 /// `load_dependent_friction`: `mu |F|`
 #[derive(Debug)]
-pub struct LoadDependent;
+pub struct LoadDependentFriction;
 
-impl Shape for LoadDependent {
+impl EffectShape for LoadDependentFriction {
     fn form(&self) -> &'static str {
         "set-valued, in proportion to the contact force"
     }
 
-    fn sizes(&self) -> Sizes {
-        Sizes::new(0.05, 0.6)
+    fn size_range(&self) -> SizeRange {
+        SizeRange::new(0.05, 0.6)
     }
 
-    fn parameters(&self, size: f64) -> Vec<Parameter> {
-        vec![Parameter::new("coefficient", size, Unit::One)]
+    fn parameters(&self, size: f64) -> Vec<EffectParameter> {
+        vec![EffectParameter::new("coefficient", size, Unit::One)]
     }
 }
 
-impl Acting for LoadDependent {
-    fn put(&self, size: f64, physics: &mut Physics) {
-        physics.drive.friction.load = size;
+impl SimulatedEffect for LoadDependentFriction {
+    fn apply(&self, size: f64, model: &mut RigModel) {
+        model.drive.friction.load = size;
     }
 }

@@ -8,10 +8,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Result;
-use palpate_cases::rivals::Finding;
+use palpate_cases::baselines::BaselineResult;
 use rayon::prelude::*;
 
-use super::files::{self, Files};
+use super::case_files::{self, CaseFiles};
 use crate::diagnose::bootstrap::problem::Study;
 use crate::diagnose::estimation::levenberg_marquardt::{self, Data};
 use crate::diagnose::estimation::projection::Remainder;
@@ -29,10 +29,10 @@ const MOST_EFFECTS: usize = 4;
 /// What the criterion names in the case that lies in `folder`.
 ///
 /// # Errors
-/// Files at fault.
-pub fn answer(folder: &Path) -> Result<Finding> {
+/// CaseFiles at fault.
+pub fn answer(folder: &Path) -> Result<BaselineResult> {
     let start = Instant::now();
-    let Files { rig, origin, trials } = files::read(folder)?;
+    let CaseFiles { rig, origin, trials } = case_files::read(folder)?;
     let study = study(&rig, &origin, sensed(&rig, &origin, &trials)?, 1)?;
     let whitener = study.even_floors();
     let first = study.first_fit();
@@ -44,7 +44,7 @@ pub fn answer(folder: &Path) -> Result<Finding> {
     };
     let (before, after) = (held(&study.nominal, &first), held(&model, &values));
     let effort = before.powers[1] > before.powers[0];
-    Ok(Finding {
+    Ok(BaselineResult {
         named,
         refitted: cross_validation::rms(&study, &before.rests, effort),
         held_out: cross_validation::rms(&study, &after.rests, effort),

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
 use clap::{Args, ValueEnum};
-use palpate_cases::Source;
+use palpate_cases::SimulatorKind;
 
-use super::recorded::table::{section, table};
-use super::score::Challenge;
+use super::challenge_score::ChallengeScore;
+use super::recordings::table::{section, table};
 use super::{page, protocol, summary};
 use crate::device::project;
 use crate::error::{InputError, UsageError};
@@ -31,7 +31,7 @@ pub struct ChallengeArgs {
     pub report: Option<PathBuf>,
     /// Simulators that play the cases; all where left out
     #[arg(long, value_name = "NAME", value_enum, value_delimiter = ',')]
-    pub source: Vec<Player>,
+    pub source: Vec<SimulatorChoice>,
     /// Real recordings beside the cases: `all`, `none`, or those whose names begin so, as `tissue_indentation/soft`
     #[arg(long, value_name = "NAME", value_delimiter = ',', default_value = "all")]
     pub recordings: Vec<String>,
@@ -55,7 +55,7 @@ pub struct ChallengeArgs {
 
 /// Who plays a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Player {
+pub enum SimulatorChoice {
     /// Our own simulation
     Own,
     /// MuJoCo
@@ -66,15 +66,15 @@ pub enum Player {
     Exudyn,
 }
 
-impl Player {
+impl SimulatorChoice {
     /// Its simulation.
     #[must_use]
-    pub fn source(self) -> Source {
+    pub fn kind(self) -> SimulatorKind {
         match self {
-            Self::Own => Source::Own,
-            Self::Mujoco => Source::Mujoco,
-            Self::Drake => Source::Drake,
-            Self::Exudyn => Source::Exudyn,
+            Self::Own => SimulatorKind::Own,
+            Self::Mujoco => SimulatorKind::Mujoco,
+            Self::Drake => SimulatorKind::Drake,
+            Self::Exudyn => SimulatorKind::Exudyn,
         }
     }
 }
@@ -92,7 +92,7 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
     let (json, report) = (open(&args.json)?, open(&args.report)?);
     let challenge = match &args.from {
         Some(path) => read(path)?,
-        None => protocol::hold(args)?,
+        None => protocol::run(args)?,
     };
     let summary = summary::table(&challenge);
     eprintln!("{summary}");
@@ -115,16 +115,16 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
 }
 
 /// A score as `--json` wrote it.
-fn read(path: &Path) -> Result<Challenge> {
+fn read(path: &Path) -> Result<ChallengeScore> {
     let text = std::fs::read_to_string(path).map_err(|error| InputError::new(path.display(), error, "a score"))?;
     let wrong = |found: String| InputError::new(path.display(), found, "a score of palpate.challenge/1");
-    let challenge: Challenge = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    let challenge: ChallengeScore = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     ensure!(challenge.schema == "palpate.challenge/1", wrong(challenge.schema));
     Ok(challenge)
 }
 
 /// Puts the score where the project shows it.
-fn publish(challenge: &Challenge, text: &str, summary: &str) -> Result<()> {
+fn publish(challenge: &ChallengeScore, text: &str, summary: &str) -> Result<()> {
     let project = project()?;
     let docs = project.join("docs");
     let mut page = Vec::new();

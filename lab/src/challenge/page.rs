@@ -1,22 +1,22 @@
 //! The page of a challenge: one self-contained file.
 
-mod concealed;
+mod baselines;
 mod confusion;
-mod failure;
+mod failures;
 mod power;
-mod recorded;
-mod rivals;
+mod recordings;
+mod smallest_effect;
 
 use std::io::{self, Write};
 
 use maud::{Markup, html};
-use palpate_cases::Source;
-use palpate_cases::truth::Kind;
+use palpate_cases::SimulatorKind;
+use palpate_cases::truth::CaseKind;
 
-use super::aim::{Aim, aims, beside};
-use super::interval::of_share;
-use super::row::Row;
-use super::score::Challenge;
+use super::binomial::clopper_pearson;
+use super::case_score::CaseScore;
+use super::challenge_score::ChallengeScore;
+use super::targets::{Target, beside, targets};
 use crate::page::shell;
 
 const STYLE: &str = include_str!("../../assets/challenge.css");
@@ -25,25 +25,25 @@ const STYLE: &str = include_str!("../../assets/challenge.css");
 ///
 /// # Errors
 /// Whatever `out` reports.
-pub fn write(challenge: &Challenge, out: &mut impl Write) -> io::Result<()> {
+pub fn write(challenge: &ChallengeScore, out: &mut impl Write) -> io::Result<()> {
     shell::open("palpate challenge", STYLE, out)?;
     let body = html! {
         (opening(challenge))
         (table(challenge))
         (power::section(challenge))
-        (concealed::section(challenge))
-        (rivals::section(challenge))
-        (recorded::section(challenge))
+        (smallest_effect::section(challenge))
+        (baselines::section(challenge))
+        (recordings::section(challenge))
         (sources(challenge))
         (confusion::section(challenge))
-        (failure::section(challenge))
+        (failures::section(challenge))
         (protocol(challenge))
     };
     out.write_all(body.0.as_bytes())?;
     shell::close(&html! {}, "", out)
 }
 
-fn opening(challenge: &Challenge) -> Markup {
+fn opening(challenge: &ChallengeScore) -> Markup {
     html! {
         p.eyebrow { "palpate challenge, seed " (challenge.seed) ", " (challenge.cases) " recordings with concealed physics" }
         h1 { (headline(challenge)) }
@@ -55,13 +55,13 @@ fn opening(challenge: &Challenge) -> Markup {
     }
 }
 
-fn headline(challenge: &Challenge) -> String {
-    let large: Vec<&Row> = select(challenge, Row::is_large);
+fn headline(challenge: &ChallengeScore) -> String {
+    let large: Vec<&CaseScore> = select(challenge, CaseScore::is_large);
     let right = large.iter().filter(|row| row.is_right()).count();
     let mut parts = Vec::new();
     if challenge.none.n > 0 {
         let quiet = challenge.none.n - challenge.none.false_alarms;
-        parts.push(format!("Nothing missing: {quiet} of {} left alone.", challenge.none.n));
+        parts.push(format!("NoEffectCounts missing: {quiet} of {} left alone.", challenge.none.n));
     }
     if !large.is_empty() {
         let of = large.len();
@@ -70,25 +70,25 @@ fn headline(challenge: &Challenge) -> String {
     if parts.is_empty() { "Recordings with concealed physics".to_owned() } else { parts.join(" ") }
 }
 
-fn select(challenge: &Challenge, is: impl Fn(&Row) -> bool) -> Vec<&Row> {
+fn select(challenge: &ChallengeScore, is: impl Fn(&CaseScore) -> bool) -> Vec<&CaseScore> {
     challenge.rows.iter().filter(|row| is(row)).collect()
 }
 
-fn table(challenge: &Challenge) -> Markup {
+fn table(challenge: &ChallengeScore) -> Markup {
     html! {
         section {
-            h2 { "What was aimed at, and what came out" }
-            div.wide { table.aims {
+            h2 { "EffectSelection was aimed at, and what came out" }
+            div.wide { table.targets {
                 thead { tr { th { "concealed" } th { "hits" } th { "of" } th { "share" } th { "95 % interval" } th { "aim" } th {} } }
-                tbody { @for line in aims(challenge).iter().filter(|line| line.of > 0) { (row_of(line)) } }
+                tbody { @for line in targets(challenge).iter().filter(|line| line.of > 0) { (row_of(line)) } }
             } }
             p.fine { (beside(challenge)) }
         }
     }
 }
 
-fn row_of(line: &Aim) -> Markup {
-    let [low, high] = of_share(line.hits, line.of);
+fn row_of(line: &Target) -> Markup {
+    let [low, high] = clopper_pearson(line.hits, line.of);
     let share = line.hits as f64 / line.of as f64;
     let told = line.least.map(|least| match () {
         () if share >= least => ("met", "met"),
@@ -108,9 +108,9 @@ fn percent(share: f64) -> String {
     format!("{:.0}\u{a0}%", 100.0 * share)
 }
 
-fn sources(challenge: &Challenge) -> Markup {
-    let of = |source: Source| select(challenge, |row| row.source == source);
-    let cell = |rows: &[&Row], kind: &dyn Fn(&Row) -> bool, is: &dyn Fn(&Row) -> bool| {
+fn sources(challenge: &ChallengeScore) -> Markup {
+    let of = |source: SimulatorKind| select(challenge, |row| row.source == source);
+    let cell = |rows: &[&CaseScore], kind: &dyn Fn(&CaseScore) -> bool, is: &dyn Fn(&CaseScore) -> bool| {
         let rows: Vec<_> = rows.iter().filter(|row| kind(row)).collect();
         let hits = rows.iter().filter(|row| is(row)).count();
         if rows.is_empty() { String::new() } else { format!("{hits} of {}", rows.len()) }
@@ -121,14 +121,14 @@ fn sources(challenge: &Challenge) -> Markup {
             p { "MuJoCo, Drake and Exudyn were written by others, and nobody here tuned what they give." }
             div.wide { table {
                 thead { tr { th { "simulator" } th { "cases" } th { "nothing missing: left alone" } th { "one effect, at least the floor: right" } th { "two: right" } th { "outside: owned" } } }
-                tbody { @for source in Source::ALL {
+                tbody { @for source in SimulatorKind::ALL {
                     @let rows = of(source);
                     @if !rows.is_empty() { tr {
                         th { (title(source)) } td { (rows.len()) }
-                        td { (cell(&rows, &|row| row.kind == Kind::None, &|row| !row.is_false_alarm())) }
-                        td { (cell(&rows, &Row::is_large, &Row::is_right)) }
-                        td { (cell(&rows, &|row| row.kind == Kind::Pair, &Row::is_right)) }
-                        td { (cell(&rows, &|row| row.kind == Kind::Outside, &Row::is_owned)) }
+                        td { (cell(&rows, &|row| row.kind == CaseKind::None, &|row| !row.is_false_alarm())) }
+                        td { (cell(&rows, &CaseScore::is_large, &CaseScore::is_right)) }
+                        td { (cell(&rows, &|row| row.kind == CaseKind::Pair, &CaseScore::is_right)) }
+                        td { (cell(&rows, &|row| row.kind == CaseKind::Outside, &CaseScore::is_owned)) }
                     } }
                 } }
             } }
@@ -136,16 +136,16 @@ fn sources(challenge: &Challenge) -> Markup {
     }
 }
 
-fn title(source: Source) -> &'static str {
+fn title(source: SimulatorKind) -> &'static str {
     match source {
-        Source::Own => "ours",
-        Source::Mujoco => "MuJoCo",
-        Source::Drake => "Drake",
-        Source::Exudyn => "Exudyn",
+        SimulatorKind::Own => "ours",
+        SimulatorKind::Mujoco => "MuJoCo",
+        SimulatorKind::Drake => "Drake",
+        SimulatorKind::Exudyn => "Exudyn",
     }
 }
 
-fn protocol(challenge: &Challenge) -> Markup {
+fn protocol(challenge: &ChallengeScore) -> Markup {
     html! {
         section {
             h2 { "How it was done" }

@@ -1,9 +1,9 @@
 //! The score in a table of Markdown: for the README, and for people who read a terminal.
 
-use super::aim::{Aim, aims, beside};
-use super::interval::of_share;
-use super::recorded::table::line;
-use super::score::Challenge;
+use super::binomial::clopper_pearson;
+use super::challenge_score::ChallengeScore;
+use super::recordings::table::line;
+use super::targets::{Target, beside, targets};
 
 /// What begins the part of a README or page of the documentation that the command writes.
 pub const BEGIN: &str = "<!-- written by `palpate challenge --publish`; not by hand -->";
@@ -12,7 +12,7 @@ pub const END: &str = "<!-- end of what `palpate challenge` writes -->";
 
 /// The table, and what it was made of.
 #[must_use]
-pub fn table(challenge: &Challenge) -> String {
+pub fn table(challenge: &ChallengeScore) -> String {
     let mut text = format!(
         "Seed {}, {} cases, answers sealed by SHA-256 `{}` before the first diagnosis.\n\n",
         challenge.seed, challenge.cases, challenge.sealed_sha256
@@ -28,9 +28,9 @@ pub fn table(challenge: &Challenge) -> String {
 }
 
 /// The cases that were drawn: a line each, and the figures that are no shares.
-fn drawn(challenge: &Challenge) -> String {
+fn drawn(challenge: &ChallengeScore) -> String {
     let mut text = "| concealed | | of | share (95 % interval) | aim |\n|---|---|---|---|---|\n".to_owned();
-    for Aim { what, hits, of, aim, .. } in aims(challenge) {
+    for Target { what, hits, of, aim, .. } in targets(challenge) {
         text += &format!("| {what} | {hits} | {of} | {} | {aim} |\n", percent(hits, of));
     }
     text + &format!("\n{}\n", beside(challenge))
@@ -42,7 +42,7 @@ pub fn percent(hits: usize, of: usize) -> String {
     if of == 0 {
         return String::new();
     }
-    let [low, high] = of_share(hits, of).map(|share| 100.0 * share);
+    let [low, high] = clopper_pearson(hits, of).map(|share| 100.0 * share);
     format!("{:.0} % ({low:.0} to {high:.0} %)", 100.0 * hits as f64 / of as f64)
 }
 

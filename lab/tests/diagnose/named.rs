@@ -1,14 +1,14 @@
 //! One effect is missing from the rig file, and it is named with its values.
 
-use palpate_cases::reference::Kind;
-use palpate_cases::sensors::Grade;
-use palpate_cases::{Truth, What, Wish, draw};
+use palpate_cases::excitation::Excitation;
+use palpate_cases::sensors::SensorGrade;
+use palpate_cases::{CaseRequest, EffectSelection, Truth, draw};
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::bench::{BENCH, Case, FADES, Size, biased, driven, fit, led, names};
 
-/// What is missing is named first, explains the recordings to the floor, and its values are within a tenth.
+/// EffectSelection is missing is named first, explains the recordings to the floor, and its values are within a tenth.
 fn finds(case: &Case, name: &str, expected: &[(&str, f64)]) {
     found(&case.diagnose(&[]), name, expected);
 }
@@ -105,9 +105,9 @@ fn a_drive_at_the_end_of_its_effort() {
 }
 
 /// A case of a simulation that shares no code with the effects, by seed and number: what is missing, and what else is wished for.
-fn concealed((seed, number): (u64, u64), what: What, wish: Wish) -> (Case, Truth) {
-    let wish = Wish { what: Some(what), ..wish };
-    let drawn = draw(seed, number, &wish).unwrap();
+fn concealed((seed, number): (u64, u64), selection: EffectSelection, request: CaseRequest) -> (Case, Truth) {
+    let request = CaseRequest { selection: Some(selection), ..request };
+    let drawn = draw(seed, number, &request).unwrap();
     let case = Case { folder: TempDir::new().unwrap() };
     drawn.write(case.folder.path()).unwrap();
     (case, drawn.truth)
@@ -117,8 +117,9 @@ fn concealed((seed, number): (u64, u64), what: What, wish: Wish) -> (Case, Truth
 /// none.
 #[test]
 fn a_cable_that_gives() {
-    let wish = Wish { sensors: Some(Grade::Fine), reference: Some(Kind::Rich), ..Wish::default() };
-    let (case, truth) = concealed((77, 0), What::single("transmission_compliance", Some(3.0)), wish);
+    let request =
+        CaseRequest { sensors: Some(SensorGrade::Fine), excitation: Some(Excitation::Rich), ..CaseRequest::default() };
+    let (case, truth) = concealed((77, 0), EffectSelection::single("transmission_compliance", Some(3.0)), request);
     let own = |name: &str| truth.effects[0].parameters.iter().find(|parameter| parameter.name == name).unwrap().value;
     let expected = [("link_stiffness", own("stiffness")), ("motor_share", 1.0 - own("tool_mass") / truth.nominal.mass)];
     found(&case.diagnose(&[]), "transmission_compliance", &expected);
@@ -127,13 +128,13 @@ fn a_cable_that_gives() {
 /// Nature's law is not the textbook's first: the finer form is taken, and nothing beside it.
 #[test]
 fn laws_that_are_rounder_than_the_plain_ones() {
-    let wish = || Wish { sensors: Some(Grade::Fine), ..Wish::default() };
+    let request = || CaseRequest { sensors: Some(SensorGrade::Fine), ..CaseRequest::default() };
     for (number, effect, pairs) in [
         (3, "force_drift", &[("drift", "settled"), ("time_constant", "time_constant")][..]),
         (0, "quadratic_damping", &[("exponent", "exponent")]),
         (2, "environment_mass", &[("mass", "moved_mass")]),
     ] {
-        let (case, truth) = concealed((90, number), What::single(effect, Some(6.0)), wish());
+        let (case, truth) = concealed((90, number), EffectSelection::single(effect, Some(6.0)), request());
         let own = |name: &str| truth.effects[0].parameters.iter().find(|own| own.name == name).unwrap().value;
         let expected: Vec<_> = pairs.iter().map(|(theirs, ours)| (*ours, own(theirs))).collect();
         let answer = case.diagnose(&[]);
@@ -147,7 +148,8 @@ fn laws_that_are_rounder_than_the_plain_ones() {
 /// left five times the noise.
 #[test]
 fn a_liquid_that_is_pushed_aside() {
-    let (case, truth) = concealed((2026, 623), What::single("quadratic_damping", None), Wish::default());
+    let (case, truth) =
+        concealed((2026, 623), EffectSelection::single("quadratic_damping", None), CaseRequest::default());
     let answer = case.diagnose(&[]);
     told(&answer, "quadratic_damping", &[("quadratic", truth.effects[0].parameters[0].value)]);
     assert!(fit(&answer, "improved") < 0.2 * fit(&answer, "refitted"), "{}", answer["fit"]);
@@ -156,7 +158,7 @@ fn a_liquid_that_is_pushed_aside() {
 /// Nothing is missing, and what the steps of a coarse encoder are wrong by repeats with each of them.
 #[test]
 fn steps_of_an_encoder_are_no_ripple() {
-    let (case, _) = concealed((2026, 112), What::Nothing, Wish::default());
+    let (case, _) = concealed((2026, 112), EffectSelection::Nothing, CaseRequest::default());
     let answer = case.diagnose(&[]);
     assert_eq!(answer["physics"], serde_json::json!([]), "{}", answer["summary"]);
 }
@@ -164,8 +166,8 @@ fn steps_of_an_encoder_are_no_ripple() {
 /// A tone of 50 Hz where the filter of a coarse encoder's contact would end at 20.
 #[test]
 fn a_hum_above_the_band() {
-    let wish = Wish { sensors: Some(Grade::Coarse), ..Wish::default() };
-    let (case, truth) = concealed((91, 1), What::single("mains_hum", Some(1.0)), wish);
+    let request = CaseRequest { sensors: Some(SensorGrade::Coarse), ..CaseRequest::default() };
+    let (case, truth) = concealed((91, 1), EffectSelection::single("mains_hum", Some(1.0)), request);
     let answer = case.diagnose(&[]);
     names(&answer, "mains_hum");
     let parameters = &answer["physics"][0]["parameters"];
@@ -181,8 +183,8 @@ fn a_hum_above_the_band() {
 /// Two masses with teeth between them, followed at 20 kHz: the motor is never seen, and strikes within the filter's width.
 #[test]
 fn a_gear_with_play() {
-    let wish = Wish { sensors: Some(Grade::Fine), ..Wish::default() };
-    let (case, truth) = concealed((78, 5), What::single("backlash", Some(1.2)), wish);
+    let request = CaseRequest { sensors: Some(SensorGrade::Fine), ..CaseRequest::default() };
+    let (case, truth) = concealed((78, 5), EffectSelection::single("backlash", Some(1.2)), request);
     let answer = case.diagnose(&[]);
     names(&answer, "backlash");
     let parameters = &answer["physics"][0]["parameters"];
@@ -191,7 +193,7 @@ fn a_gear_with_play() {
     let truth = &truth.effects[0].parameters;
     let motor = 1.0 - truth[1].value / mass;
     println!("gap {gap:.3e} of {:.3e}, motor's share {share:.3} of {motor:.3}", truth[0].value);
-    // What is seen is the motor's momentum: gap and mass lie on each other, and the way through the gap is taken for a
+    // EffectSelection is seen is the motor's momentum: gap and mass lie on each other, and the way through the gap is taken for a
     // cubic: nearly half too much, here.
     assert!((gap * share / (truth[0].value * motor) - 1.0).abs() < 0.55, "{gap} {share}");
     // The drive lay at 2.3 floors.

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use palpate_cases::python;
 use palpate_lab::device::project;
-use palpate_lab::recordings;
+use palpate_lab::recordings_folder;
 use palpate_lab::tools::{self, Leave, Missing, TARGET};
 
 /// Name, arguments of cargo, and variables of the environment.
@@ -55,7 +55,7 @@ fn verify(strict: bool) -> anyhow::Result<bool> {
     let folder = project()?;
     for (what, packages) in [
         ("the tests in MuJoCo, Drake and Exudyn", &python::SIMULATORS),
-        ("the tests of PySINDy and SysIdentPy", &python::RIVALS),
+        ("the tests of PySINDy and SysIdentPy", &python::BASELINES),
     ] {
         let found = python::set_up(&folder.join("target").join("python"), packages);
         ready(what, found.map(drop).map_err(|missing| missing.to_string()));
@@ -83,8 +83,8 @@ fn verify(strict: bool) -> anyhow::Result<bool> {
     }
     println!("\nfailed: {}", if failed.is_empty() { "nothing".to_owned() } else { failed.join(", ") });
     left_out.iter().for_each(|what| println!("left out: {what}"));
-    if recordings::folder().is_none() {
-        println!("left out: the tests on real recordings; {}", recordings::ADVICE);
+    if recordings_folder::folder().is_none() {
+        println!("left out: the tests on real recordings; {}", recordings_folder::ADVICE);
     }
     Ok(failed.is_empty() && (left_out.is_empty() || !strict))
 }

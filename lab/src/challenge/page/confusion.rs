@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
-use palpate_cases::truth::Kind;
+use palpate_cases::truth::CaseKind;
 
-use super::super::row::Row;
-use super::super::score::Challenge;
+use super::super::case_score::CaseScore;
+use super::super::challenge_score::ChallengeScore;
 
-pub(super) fn section(challenge: &Challenge) -> Markup {
-    let rows: Vec<&Row> = challenge.rows.iter().filter(|row| row.kind != Kind::Pair).collect();
+pub(super) fn section(challenge: &ChallengeScore) -> Markup {
+    let rows: Vec<&CaseScore> = challenge.rows.iter().filter(|row| row.kind != CaseKind::Pair).collect();
     let mut counts: BTreeMap<(u8, String), BTreeMap<String, usize>> = BTreeMap::new();
     for row in &rows {
         let said = said(row);
@@ -21,7 +21,7 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
     columns.sort_by_key(|name| (["more than one", "unknown", "nothing"].contains(name), *name));
     html! {
         section {
-            h2 { "What was concealed, and what was named" }
+            h2 { "EffectSelection was concealed, and what was named" }
             p { "A row is what was concealed, a column what was said; on the diagonal it is right. All strengths, down to a tenth of the floor." }
             div.wide { table.confusion {
                 thead { tr { th { "concealed" } @for column in &columns { th { span { (column.replace('_', " ")) } } } } }
@@ -31,15 +31,15 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
     }
 }
 
-fn truth(row: &Row) -> (u8, String) {
+fn truth(row: &CaseScore) -> (u8, String) {
     match row.kind {
-        Kind::None => (2, "nothing".to_owned()),
-        Kind::Outside => (1, format!("{} (outside)", row.truth.join(" and "))),
+        CaseKind::None => (2, "nothing".to_owned()),
+        CaseKind::Outside => (1, format!("{} (outside)", row.truth.join(" and "))),
         _ => (0, row.truth.join(" and ")),
     }
 }
 
-fn said(row: &Row) -> String {
+fn said(row: &CaseScore) -> String {
     match row.named.as_slice() {
         [] => "nothing".to_owned(),
         [one] => one.clone(),

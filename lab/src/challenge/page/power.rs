@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::super::interval::of_share;
-use super::super::score::{Band, Challenge};
+use super::super::binomial::clopper_pearson;
+use super::super::challenge_score::{ChallengeScore, StrengthBand};
 
 /// px down; shares of the width across.
 const TOP: f64 = 14.0;
@@ -11,7 +11,7 @@ const BOTTOM: f64 = 214.0;
 const LEFT: f64 = 0.1;
 const RIGHT: f64 = 0.98;
 
-pub(super) fn section(challenge: &Challenge) -> Markup {
+pub(super) fn section(challenge: &ChallengeScore) -> Markup {
     let bands = &challenge.single.by_strength;
     if bands.is_empty() {
         return html! {};
@@ -35,7 +35,7 @@ pub(super) fn section(challenge: &Challenge) -> Markup {
     }
 }
 
-fn column(bands: &[Band], at: usize, band: &Band) -> Markup {
+fn column(bands: &[StrengthBand], at: usize, band: &StrengthBand) -> Markup {
     let pitch = (RIGHT - LEFT) / bands.len() as f64;
     let middle = LEFT + (at as f64 + 0.5) * pitch;
     html! {
@@ -47,7 +47,7 @@ fn column(bands: &[Band], at: usize, band: &Band) -> Markup {
 }
 
 fn point(class: &str, x: f64, hits: usize, of: usize) -> Markup {
-    let [low, high] = of_share(hits, of);
+    let [low, high] = clopper_pearson(hits, of);
     let share = hits as f64 / of.max(1) as f64;
     html! {
         g class=(class) {
@@ -58,7 +58,7 @@ fn point(class: &str, x: f64, hits: usize, of: usize) -> Markup {
     }
 }
 
-fn name(band: &Band) -> String {
+fn name(band: &StrengthBand) -> String {
     match (band.from, band.to) {
         (0.0, to) => format!("below {to}"),
         (from, to) if to >= 1000.0 => format!("above {from}"),
@@ -66,11 +66,11 @@ fn name(band: &Band) -> String {
     }
 }
 
-fn label(bands: &[Band]) -> String {
-    let told = |band: &Band| {
+fn label(bands: &[StrengthBand]) -> String {
+    let describe = |band: &StrengthBand| {
         format!("{}: {} of {} detected, {} named rightly", name(band), band.detected, band.n, band.named_rightly)
     };
-    bands.iter().map(told).collect::<Vec<_>>().join("; ")
+    bands.iter().map(describe).collect::<Vec<_>>().join("; ")
 }
 
 fn y(share: f64) -> f64 {
