@@ -18,40 +18,22 @@ use crate::tools::{Leave, MissingTools};
 
 /// Runs the demonstration; what had to be left out is told at the end.
 ///
+/// The diagnosis comes first, for it needs the host alone; the device's image is built after it.
+///
 /// # Errors
 /// A file cannot be written, a tool that is there fails, or host and device differ.
 pub fn run() -> Result<()> {
+    println!("Palpate: what a simulation leaves out, and how stiff a contact is. Five steps, some minutes.");
     let mut left_out = Vec::new();
-    println!("1. The device: its image, and QEMU to run it");
-    let device = match Device::prepare(Leave::Install) {
-        Ok(device) => Some(Runner::Device(device)),
-        Err(error) if error.is::<MissingTools>() => {
-            left_out.push(format!("the device: {error}"));
-            None
-        }
-        Err(error) => return Err(error),
-    };
     let project = project()?;
     let out = project.join("out").join("demo");
     let rigs = project.join("lab").join("rigs");
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
-
-    println!("2. A simulated bench: a tool taps a wall of 300 N/m and 5 N s/m");
     let bench = rigs.join("bench.toml");
-    let trial = out.join("bench.csv");
-    simulate::run(SimulateArgs { rig: bench.clone(), model: None, seed: 1, out: trial.clone() })?;
-    let mut pages = vec![show(device.as_ref(), &bench, &trial, &out.join("bench"))?];
 
-    println!("3. A real recording: a probe sinks into a polymer gel, nanonewtons on micrometres");
-    let real = recordings_folder::folder().map(|folder| folder.join("afm_soft_contact").join("creep_polymergel.csv"));
-    match real.filter(|path| path.is_file()) {
-        Some(trial) => pages.push(show(device.as_ref(), &rigs.join("afm_creep_gel.toml"), &trial, &out.join("gel"))?),
-        None => left_out.push(format!("the real recording: there is none here; {}", recordings_folder::ADVICE)),
-    }
-
-    println!("4. What the simulation leaves out: a bench whose contact relaxes, which the rig file does not know");
-    pages.push(concealed(&bench, &out.join("diagnosis"))?);
-    println!("5. The same of a real recording: an arm with a weight and dry friction, held against a bare inertia");
+    println!("\n1. What the simulation leaves out: a bench whose contact relaxes, which the rig file does not know");
+    let mut pages = vec![concealed(&bench, &out.join("diagnosis"))?];
+    println!("\n2. The same of a real recording: an arm with a weight and dry friction, held against a bare inertia");
     let arm = recordings_folder::folder().map(|folder| folder.join("dfki_pendulum"));
     match arm.filter(|folder| folder.is_dir()) {
         Some(folder) => {
@@ -61,7 +43,27 @@ pub fn run() -> Result<()> {
         None => left_out.push(format!("the arm: there is none here; {}", recordings_folder::ADVICE)),
     }
 
-    println!("Pages to open in a browser:");
+    println!("\n3. The device: its image is built (half a minute of processor time), and QEMU is to run it");
+    let device = match Device::prepare(Leave::Install) {
+        Ok(device) => Some(Runner::Device(device)),
+        Err(error) if error.is::<MissingTools>() => {
+            left_out.push(format!("the device: {error}"));
+            None
+        }
+        Err(error) => return Err(error),
+    };
+    println!("\n4. A simulated bench, on the host and on the device: a tool taps a wall of 300 N/m and 5 N s/m");
+    let trial = out.join("bench.csv");
+    simulate::run(SimulateArgs { rig: bench.clone(), model: None, seed: 1, out: trial.clone() })?;
+    pages.push(show(device.as_ref(), &bench, &trial, &out.join("bench"))?);
+    println!("\n5. A real recording, on both: a probe sinks into a polymer gel, nanonewtons on micrometres");
+    let real = recordings_folder::folder().map(|folder| folder.join("afm_soft_contact").join("creep_polymergel.csv"));
+    match real.filter(|path| path.is_file()) {
+        Some(trial) => pages.push(show(device.as_ref(), &rigs.join("afm_creep_gel.toml"), &trial, &out.join("gel"))?),
+        None => left_out.push(format!("the real recording: there is none here; {}", recordings_folder::ADVICE)),
+    }
+
+    println!("\nPages to open in a browser:");
     pages.iter().for_each(|page| println!("   {}", page.display()));
     if left_out.is_empty() {
         println!("Nothing was left out.");

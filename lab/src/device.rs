@@ -1,7 +1,7 @@
 //! The bench image: built from the same sources, run under QEMU, fed and read by files.
 
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Read, Write};
+use std::io::{BufReader, BufWriter, IsTerminal as _, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -132,19 +132,22 @@ pub fn project() -> Result<PathBuf> {
 
 /// Builds an image, an example of `package`, by its name and finds the file that cargo made.
 pub(crate) fn build(package: &str, name: &str) -> Result<PathBuf> {
-    let target = ["--package", package, "--example", name, "--target", tools::TARGET];
+    let target = ["--profile", "device", "--package", package, "--example", name, "--target", tools::TARGET];
     cargo(&target, name, |message| message["executable"].as_str().map(PathBuf::from))
 }
 
-/// Runs `cargo build --release` with `arguments` and finds the file that `file` takes from the message about `name`.
+/// Runs `cargo build` with `arguments` and finds the file that `file` takes from the message about `name`.
 pub(crate) fn cargo(
     arguments: &[&str],
     name: &str,
     file: impl Fn(&serde_json::Value) -> Option<PathBuf>,
 ) -> Result<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    // Who watches sees cargo's progress; a file does not need it.
+    let quiet = if std::io::stderr().is_terminal() { None } else { Some("--quiet") };
     let output = Command::new(cargo)
-        .args(["build", "--release", "--quiet"])
+        .arg("build")
+        .args(quiet)
         .args(arguments)
         .args(["--message-format", "json-render-diagnostics"])
         .current_dir(project()?)

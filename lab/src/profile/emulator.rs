@@ -88,7 +88,7 @@ pub(super) fn counter() -> Result<PathBuf> {
         let files = message["filenames"].as_array()?.iter().filter_map(|file| file.as_str());
         files.map(PathBuf::from).find(|file| file.extension().is_some_and(|e| e == "so" || e == "dylib" || e == "dll"))
     };
-    device::cargo(&["--package", "palpate-counter"], "palpate_counter", library)
+    device::cargo(&["--release", "--package", "palpate-counter"], "palpate_counter", library)
 }
 
 /// One line an instruction: address, bytes, least and most cycles, saved behind an access, an access itself, registers read

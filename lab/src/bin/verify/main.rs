@@ -2,6 +2,7 @@
 
 mod tree;
 
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
@@ -37,6 +38,46 @@ fn main() -> ExitCode {
 }
 
 fn verify(strict: bool) -> anyhow::Result<bool> {
+    println!(
+        "verify: formatting, lints, documentation and all tests; 10 minutes of processor time or more from nothing"
+    );
+    announce("set-up: what is needed beside Rust (a gigabyte of other simulators for Python is the largest)");
+    let folder = project()?;
+    let (checks, left_out) = set_up(&folder);
+    let mut failed = Vec::new();
+    announce("source tree: no symbolic link, no path of a machine");
+    if let Err(error) = tree::check(&folder) {
+        println!("{error:#}\n== source tree: FAILED");
+        failed.push("source tree");
+    }
+    let count = checks.len();
+    for (at, check) in checks.into_iter().enumerate() {
+        announce(&format!("{} of {count}, {}: cargo {}", at + 1, check.name, check.arguments.join(" ")));
+        let since = Instant::now();
+        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        let done = cargo.args(&check.arguments).envs(check.variables).current_dir(&folder).status()?;
+        let outcome = if done.success() { "passed" } else { "FAILED" };
+        println!("== {}: {outcome} after {:.0} s", check.name, since.elapsed().as_secs_f64());
+        if !done.success() {
+            failed.push(check.name);
+        }
+    }
+    println!("\nfailed: {}", if failed.is_empty() { "nothing".to_owned() } else { failed.join(", ") });
+    left_out.iter().for_each(|what| println!("left out: {what}"));
+    // They are nobody's to install: leaving them out is no failure of a strict run.
+    if recordings_folder::folder().is_none() {
+        println!("left out: the tests on real recordings; {}", recordings_folder::ADVICE);
+    }
+    Ok(failed.is_empty() && (left_out.is_empty() || !strict))
+}
+
+/// Says what comes next, at once.
+fn announce(next: &str) {
+    println!("\n== {next}");
+}
+
+/// Sets up what the checks need; the checks that can run, and what has to be left out.
+fn set_up(folder: &Path) -> (Vec<Check>, Vec<String>) {
     let mut left_out = Vec::new();
     let mut ready = |what: &str, found: Result<(), String>| match found {
         Ok(()) => true,
@@ -45,14 +86,12 @@ fn verify(strict: bool) -> anyhow::Result<bool> {
             false
         }
     };
-    let told = |found: Result<(), Missing>| found.map_err(|missing| missing.to_string());
-    let rustfmt = ready("formatting", told(tools::component("rustfmt", "fmt", Leave::Install)));
-    let clippy = ready("lints", told(tools::component("clippy", "clippy", Leave::Install)));
-    let target = ready("the device's image", told(tools::cross_target(Leave::Install)));
-    let qemu = ready("the device's tests", told(tools::qemu(Leave::Install).map(drop)));
-    let disassembler = ready("what the device's code costs", told(tools::disassembler(Leave::Install).map(drop)));
-    let device = target & qemu & disassembler;
-    let folder = project()?;
+    let in_words = |found: Result<(), Missing>| found.map_err(|missing| missing.to_string());
+    let rustfmt = ready("formatting", in_words(tools::component("rustfmt", "fmt", Leave::Install)));
+    let clippy = ready("lints", in_words(tools::component("clippy", "clippy", Leave::Install)));
+    let target = ready("the device's image", in_words(tools::cross_target(Leave::Install)));
+    let qemu = ready("the device's tests", in_words(tools::qemu(Leave::Install).map(drop)));
+    let disassembler = ready("what the device's code costs", in_words(tools::disassembler(Leave::Install).map(drop)));
     for (what, packages) in [
         ("the tests in MuJoCo, Drake and Exudyn", &python::SIMULATORS),
         ("the tests of PySINDy and SysIdentPy", &python::BASELINES),
@@ -60,35 +99,10 @@ fn verify(strict: bool) -> anyhow::Result<bool> {
         let found = python::set_up(&folder.join("target").join("python"), packages);
         ready(what, found.map(drop).map_err(|missing| missing.to_string()));
     }
-    let mut failed = Vec::new();
-    println!("\n== source tree: no symbolic link, no path of a machine");
-    if let Err(error) = tree::check(&folder) {
-        println!("{error:#}\n== source tree: FAILED");
-        failed.push("source tree");
-    }
-    for check in checks(rustfmt, clippy, target, device) {
-        println!("\n== {}: cargo {}", check.name, check.arguments.join(" "));
-        let since = Instant::now();
-        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        let done = cargo.args(&check.arguments).envs(check.variables).current_dir(&folder).status()?;
-        println!(
-            "== {}: {} after {:.0} s",
-            check.name,
-            if done.success() { "passed" } else { "FAILED" },
-            since.elapsed().as_secs_f64()
-        );
-        if !done.success() {
-            failed.push(check.name);
-        }
-    }
-    println!("\nfailed: {}", if failed.is_empty() { "nothing".to_owned() } else { failed.join(", ") });
-    left_out.iter().for_each(|what| println!("left out: {what}"));
-    if recordings_folder::folder().is_none() {
-        println!("left out: the tests on real recordings; {}", recordings_folder::ADVICE);
-    }
-    Ok(failed.is_empty() && (left_out.is_empty() || !strict))
+    (checks(rustfmt, clippy, target, target & qemu & disassembler), left_out)
 }
 
+/// All of them share the profile of the tool, so that no package is compiled a second time for another.
 fn checks(rustfmt: bool, clippy: bool, target: bool, device: bool) -> Vec<Check> {
     let check = |name, arguments: &[&'static str]| Check { name, arguments: arguments.to_vec(), variables: Vec::new() };
     let mut checks = Vec::new();
@@ -96,11 +110,12 @@ fn checks(rustfmt: bool, clippy: bool, target: bool, device: bool) -> Vec<Check>
         checks.push(check("formatting", &["fmt", "--all", "--check"]));
     }
     if clippy {
-        checks.push(check("lints", &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
+        checks.push(check("lints", &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     }
     if clippy && target {
         let image = [
             "clippy",
+            "--release",
             "--package",
             "palpate",
             "--package",
@@ -115,9 +130,10 @@ fn checks(rustfmt: bool, clippy: bool, target: bool, device: bool) -> Vec<Check>
         ];
         checks.push(check("lints of the image", &image));
     }
-    let documentation = check("documentation", &["doc", "--workspace", "--no-deps", "--document-private-items"]);
+    let documentation =
+        check("documentation", &["doc", "--release", "--workspace", "--no-deps", "--document-private-items"]);
     checks.push(Check { variables: vec![("RUSTDOCFLAGS", "-D warnings")], ..documentation });
-    let tests = check("tests", &["test", "--workspace", "--no-fail-fast"]);
+    let tests = check("tests", &["test", "--release", "--workspace", "--no-fail-fast"]);
     let variables = if device { vec![("PALPATE_DEVICE", "required")] } else { Vec::new() };
     checks.push(Check { variables, ..tests });
     checks
