@@ -10,13 +10,13 @@
 use crate::rig::{Contact, Drive};
 
 /// Steps per fastest time constant: a local error of 0.05^5/120, 3e-9 of the state.
-const FINENESS: f64 = 20.0;
+const STEPS_PER_TIME_CONSTANT: f64 = 20.0;
 
 /// Most steps that one hold of the effort may take.
-pub const MOST_STEPS: f64 = 10_000.0;
+pub const MAX_STEPS: f64 = 10_000.0;
 
 /// Crossings that one step is cut at. More of them happen only where the tool grazes the surface, and change nothing.
-const MOST_CUTS: usize = 8;
+const MAX_BISECTIONS: usize = 8;
 
 /// Position and velocity of the tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,20 +38,20 @@ pub struct Plant {
 
 impl Contact {
     /// The force of a linear contact at `state`, whether or not the surface can bear it.
-    fn bearing(&self, state: State) -> f64 {
+    fn free_force(&self, state: State) -> f64 {
         self.stiffness * (state.position - self.surface) + self.damping * state.velocity
     }
 
     /// Above zero where the tool touches.
     fn touch(&self, state: State) -> f64 {
-        if self.bilateral { 1.0 } else { (state.position - self.surface).min(self.bearing(state)) }
+        if self.bilateral { 1.0 } else { (state.position - self.surface).min(self.free_force(state)) }
     }
 
     /// The contact force: zero out of contact, never pulling unless bilateral.
     #[must_use]
     pub fn force(&self, state: State) -> f64 {
         if self.bilateral || state.position > self.surface {
-            let force = self.bearing(state);
+            let force = self.free_force(state);
             if self.bilateral { force } else { force.max(0.0) }
         } else {
             0.0
@@ -74,7 +74,7 @@ impl Plant {
     /// Steps that `span` seconds need.
     #[must_use]
     pub fn steps_for(&self, span: f64) -> f64 {
-        (span * self.fastest_rate() * FINENESS).ceil().max(1.0)
+        (span * self.fastest_rate() * STEPS_PER_TIME_CONSTANT).ceil().max(1.0)
     }
 
     /// The state `span` seconds later in `steps` equal steps, the effort held.
@@ -87,13 +87,13 @@ impl Plant {
     /// One step, cut where the contact begins or ends.
     fn step(&self, mut state: State, effort: f64, span: f64) -> State {
         let mut left = span;
-        for _ in 0..MOST_CUTS {
+        for _ in 0..MAX_BISECTIONS {
             let touching = self.is_touching(state);
             let end = self.frozen(state, effort, left, touching);
             if self.holds(end, touching) {
                 return end;
             }
-            let cut = self.crossing(state, effort, left, touching);
+            let cut = self.onset_time(state, effort, left, touching);
             state = self.frozen(state, effort, cut, touching);
             left -= cut;
             if left <= span * f64::EPSILON {
@@ -112,7 +112,7 @@ impl Plant {
     }
 
     /// Seconds until the regime no longer holds, known to end before `span`; just beyond the edge.
-    fn crossing(&self, state: State, effort: f64, span: f64, touching: bool) -> f64 {
+    fn onset_time(&self, state: State, effort: f64, span: f64, touching: bool) -> f64 {
         let (mut before, mut after) = (0.0, span);
         while after - before > span * 1e-14 {
             let middle = 0.5 * (before + after);
@@ -131,7 +131,7 @@ impl Plant {
     /// Runge-Kutta 4 in a given regime.
     fn frozen(&self, state: State, effort: f64, span: f64, touching: bool) -> State {
         let rate = |at: State| {
-            let force = if touching { self.contact.map_or(0.0, |contact| contact.bearing(at)) } else { 0.0 };
+            let force = if touching { self.contact.map_or(0.0, |contact| contact.free_force(at)) } else { 0.0 };
             (at.velocity, (effort - force - self.drive.viscous * at.velocity) / self.drive.inertia)
         };
         let go =

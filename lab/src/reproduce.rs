@@ -1,19 +1,19 @@
 //! `palpate reproduce`: the paper's study on a simulated bench, beside the paper's own figures, and what does better.
 
-pub mod bench;
-pub mod better;
 pub mod claim;
+pub mod comparison;
 pub mod estimator;
 mod figures;
-mod files;
-pub mod force;
+pub mod force_control;
 pub mod measure;
 pub mod models;
+mod output_files;
 mod page;
 pub mod paper;
+pub mod paper_contact;
+pub mod paper_tables;
 mod plot;
 pub mod rates;
-pub mod study;
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -24,8 +24,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use claim::Claim;
 use figures::Figure;
+use paper_tables::{PaperVariant, Study};
 use rates::{Rate, Source};
-use study::{Reading, Study};
 
 /// Reproduce the paper's study, and show what does better
 #[derive(Debug, Clone, Args)]
@@ -68,11 +68,11 @@ pub struct Results {
     /// What the paper says against itself.
     pub inconsistencies: Vec<String>,
     /// Where the truth is known.
-    pub better: Vec<better::Row>,
+    pub better: Vec<comparison::ComparisonRow>,
     /// Other contact laws.
     pub models: Vec<models::Case>,
     /// The force under control.
-    pub force: Vec<force::Row>,
+    pub force: Vec<force_control::ForceControlResult>,
     figures: Vec<Figure>,
     better_figures: Vec<Figure>,
     force_figures: Vec<Figure>,
@@ -84,7 +84,7 @@ pub struct Results {
 /// # Errors
 /// An output cannot be written, or, with `--count`, the image fails.
 pub fn run(args: &ReproduceArgs) -> Result<()> {
-    let files = args.out.as_deref().map(files::Files::open).transpose()?;
+    let files = args.out.as_deref().map(output_files::OutputFiles::open).transpose()?;
     let results = Results::compute(args)?;
     print(&results).context("standard output")?;
     if let (Some(files), Some(folder)) = (files, &args.out) {
@@ -101,21 +101,21 @@ impl Results {
     /// With `args.count`, the image fails; nothing for the rig files of this repository.
     pub fn compute(args: &ReproduceArgs) -> Result<Self> {
         let rates = Source::find(args.count)?;
-        let bar = bar(3 * 7 + better::compared().len() + 5 + force::Source::all().len() + 3);
+        let bar = bar(3 * 7 + comparison::compared().len() + 5 + force_control::StiffnessSource::all().len() + 3);
         let done = || bar.inc(1);
         bar.set_message("simulating the paper's contacts");
-        let trials = study::trials()?;
+        let trials = paper_tables::trials()?;
         done();
         bar.set_message("the paper's tables");
-        let studies = Reading::ALL.map(|reading| Study::of(reading, &trials, &done));
+        let studies = PaperVariant::ALL.map(|reading| Study::of(reading, &trials, &done));
         let studies: Vec<Study> = studies.into_iter().collect::<Result<_>>()?;
         bar.set_message("what does better");
-        let steps = better::trials()?;
-        let better = better::study(&steps, &done)?;
+        let steps = comparison::trials()?;
+        let better = comparison::study(&steps, &done)?;
         bar.set_message("other contact laws");
         let models = models::study(&done)?;
         bar.set_message("the force under control");
-        let force = force::study(&done)?;
+        let force = force_control::study(&done)?;
         bar.set_message("figures");
         let shown = usize::from(args.sampling == Sampling::Tenth);
         let rate_table = rates.table();
@@ -125,7 +125,7 @@ impl Results {
         let force_figures = better_figures.split_off(better_figures.len() - 1);
         bar.finish_and_clear();
         let claims = claim::of_tables(&studies).into_iter().chain(claim::of_rates(&rates)).collect();
-        let (inconsistencies, rigs) = (claim::inconsistencies(), files::all_rigs().collect());
+        let (inconsistencies, rigs) = (claim::inconsistencies(), output_files::all_rigs().collect());
         Ok(Self {
             studies,
             shown,

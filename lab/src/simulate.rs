@@ -1,15 +1,15 @@
 //! `palpate simulate`: the rig as its file describes it, run through a trial.
 
-mod bench;
-mod body;
-mod chain;
+mod actuation;
+mod completed_rig;
 mod controller;
-mod gauge;
-mod led;
-mod mover;
+mod drive_effects;
+mod prescribed_motion;
+mod quantized_sensor;
+mod rig_dynamics;
 mod trial;
 
-pub use trial::{Pilot, Seen};
+pub use trial::{CommandSource, Measurement};
 
 use std::path::PathBuf;
 
@@ -93,7 +93,7 @@ fn refuse_own_input(args: &SimulateArgs) -> Result<(), InputError> {
 /// The rig has neither drive nor contact, lacks what no default fits, holds an effect that cannot be, or is too stiff or
 /// too long to simulate.
 pub fn simulate(rig: &Rig, seed: u64, origin: &str) -> Result<Trial, InputError> {
-    trial::run(&bench::complete(rig, origin)?, seed, origin, None)
+    trial::run(&completed_rig::complete(rig, origin)?, seed, origin, None)
 }
 
 /// As [`simulate`], with `pilot` at the controls of a rig with a drive: each row's readings are handed to it, and what it commands
@@ -101,6 +101,11 @@ pub fn simulate(rig: &Rig, seed: u64, origin: &str) -> Result<Trial, InputError>
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn steer(rig: &Rig, seed: u64, origin: &str, pilot: &mut dyn Pilot) -> Result<Trial, InputError> {
-    trial::run(&bench::complete(rig, origin)?, seed, origin, Some(pilot))
+pub fn simulate_commanded(
+    rig: &Rig,
+    seed: u64,
+    origin: &str,
+    source: &mut dyn CommandSource,
+) -> Result<Trial, InputError> {
+    trial::run(&completed_rig::complete(rig, origin)?, seed, origin, Some(source))
 }

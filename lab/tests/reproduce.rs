@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 
 use assert_cmd::Command;
-use palpate_lab::reproduce::better::Row;
 use palpate_lab::reproduce::claim;
+use palpate_lab::reproduce::comparison::ComparisonRow;
 use palpate_lab::reproduce::estimator::Estimator;
-use palpate_lab::reproduce::force::Source;
-use palpate_lab::reproduce::measure::Spread;
+use palpate_lab::reproduce::force_control::StiffnessSource;
+use palpate_lab::reproduce::measure::MeanAndDeviation;
 use palpate_lab::reproduce::{ReproduceArgs, Results, Sampling};
 
 /// Everything, computed once for all tests.
@@ -105,7 +105,7 @@ fn the_verdicts_that_are_no_close_call() {
     }
 }
 
-fn row(estimator: Estimator, matched: bool) -> &'static Row {
+fn row(estimator: Estimator, matched: bool) -> &'static ComparisonRow {
     let found = results().better.iter().find(|row| row.estimator == estimator && row.matched == matched);
     found.unwrap_or_else(|| panic!("{estimator:?} was not run"))
 }
@@ -175,13 +175,13 @@ fn other_contact_laws_are_found_where_spring_and_damper_alone_are_off() {
 
 #[test]
 fn a_fast_estimate_holds_the_force_and_a_late_one_does_not() {
-    let rms = |wanted: &dyn Fn(Source) -> bool| -> Spread {
+    let rms = |wanted: &dyn Fn(StiffnessSource) -> bool| -> MeanAndDeviation {
         results().force.iter().find(|row| wanted(row.source)).unwrap_or_else(|| panic!("it did not fly")).rms
     };
-    let known = rms(&|source| source == Source::Known).mean;
-    let cusum = rms(&|source| matches!(source, Source::Estimated(Estimator::Cusum, _))).mean;
-    let bls = rms(&|source| matches!(source, Source::Estimated(Estimator::Bls(_), _))).mean;
-    let none = rms(&|source| source == Source::Fixed).mean;
+    let known = rms(&|source| source == StiffnessSource::Known).mean;
+    let cusum = rms(&|source| matches!(source, StiffnessSource::Estimated(Estimator::Cusum, _))).mean;
+    let bls = rms(&|source| matches!(source, StiffnessSource::Estimated(Estimator::Bls(_), _))).mean;
+    let none = rms(&|source| source == StiffnessSource::Fixed).mean;
     println!("rms of the error: known {known:.2}, cusum {cusum:.2}, bls {bls:.2}, none {none:.2} %");
     within("the true K, %", known, 1.0, 3.0);
     within("by the default, %", cusum, 2.5, 5.0);

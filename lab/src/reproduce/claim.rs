@@ -1,8 +1,8 @@
 //! What the paper claims, each as a comparison that is computed, and what it says against itself.
 
 use super::paper::{METHODS, RATES, RMSE_BY_CONTACT, RMSE_BY_WINDOW, STD_BY_WINDOW};
+use super::paper_tables::{Cell, Study};
 use super::rates::{CLOCK_HZ, Source};
-use super::study::{Cell, Study};
 
 /// A claim under one reading.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,14 +3,14 @@
 use anyhow::Result;
 use palpate::Estimate;
 
-use super::bench::{Contact, Trial};
-use super::better;
+use super::comparison;
 use super::estimator::{Estimator, as_the_paper};
-use super::force::{self, Source, WANTED};
+use super::force_control::{self, StiffnessSource, WANTED};
 use super::measure::{damping, stiffness};
+use super::paper_contact::{PaperContact, PaperTrial};
+use super::paper_tables::{PaperVariant, Trials};
 use super::plot::{Curve, Plot};
 use super::rates::Rate;
-use super::study::{Reading, Trials};
 
 /// A figure.
 #[derive(Debug, Clone)]
@@ -30,16 +30,21 @@ const BEFORE: f64 = 0.3;
 
 /// Traces of the paper's four on one trial of a contact.
 struct Traces<'a> {
-    contact: Contact,
-    trial: &'a Trial,
+    contact: PaperContact,
+    trial: &'a PaperTrial,
     time: Vec<f64>,
     begin: f64,
     runs: Vec<(String, Vec<Estimate>)>,
 }
 
 impl<'a> Traces<'a> {
-    fn of(reading: &Reading, contact: Contact, trials: &'a Trials, estimators: &[(String, Estimator)]) -> Result<Self> {
-        let at = Contact::PAPER.iter().position(|one| *one == contact).unwrap_or_default();
+    fn of(
+        reading: &PaperVariant,
+        contact: PaperContact,
+        trials: &'a Trials,
+        estimators: &[(String, Estimator)],
+    ) -> Result<Self> {
+        let at = PaperContact::PAPER.iter().position(|one| *one == contact).unwrap_or_default();
         let trial = &trials[at][0];
         let samples = trial.samples(reading.every);
         let config = as_the_paper(1e-3 * reading.every as f32);
@@ -89,13 +94,13 @@ const NEWTON_SECOND: &str = "damping B, N s/m";
 ///
 /// # Errors
 /// None for the settings of a reading.
-pub fn of_paper(reading: &Reading, trials: &Trials, rates: &[Rate]) -> Result<Vec<Figure>> {
+pub fn of_paper(reading: &PaperVariant, trials: &Trials, rates: &[Rate]) -> Result<Vec<Figure>> {
     let four: Vec<(String, Estimator)> = reading.estimators(300).into_iter().map(|e| (e.name(), e)).collect();
     let windows = [50, 100, 300].map(|w| (format!("window of {w}"), Estimator::Bls(w)));
-    let soft = Traces::of(reading, Contact::Soft, trials, &four)?;
-    let varying = Traces::of(reading, Contact::Varying, trials, &four)?;
-    let medium = Traces::of(reading, Contact::Medium, trials, &four)?;
-    let lengths = Traces::of(reading, Contact::Soft, trials, &windows)?;
+    let soft = Traces::of(reading, PaperContact::Soft, trials, &four)?;
+    let varying = Traces::of(reading, PaperContact::Varying, trials, &four)?;
+    let medium = Traces::of(reading, PaperContact::Medium, trials, &four)?;
+    let lengths = Traces::of(reading, PaperContact::Soft, trials, &windows)?;
     let figure = |number, title, words: &str, plot| Figure { number, title, words: words.into(), plot };
     Ok(vec![
         figure(
@@ -121,7 +126,7 @@ pub fn of_paper(reading: &Reading, trials: &Trials, rates: &[Rate]) -> Result<Ve
             "Soft contact: damping by the four methods",
             &format!(
                 "Each method's B; the bench holds {} N s/m. The paper low-passes the velocity alone, which delays it against the force: figure 13 shows what that does to B where nothing else disturbs it.",
-                truth(Contact::Soft)[1]
+                truth(PaperContact::Soft)[1]
             ),
             soft.plot(NEWTON_SECOND, (-5.0, 15.0), 10.0, all_damping),
         ),
@@ -146,7 +151,7 @@ pub fn of_paper(reading: &Reading, trials: &Trials, rates: &[Rate]) -> Result<Ve
         figure(
             9,
             "Time-varying contact: damping by the four methods",
-            &format!("Each method's B on the bubble wrap, which holds {} N s/m.", truth(Contact::Varying)[1]),
+            &format!("Each method's B on the bubble wrap, which holds {} N s/m.", truth(PaperContact::Varying)[1]),
             varying.plot(NEWTON_SECOND, (-5.0, 15.0), 12.0, all_damping),
         ),
         figure(
@@ -155,14 +160,17 @@ pub fn of_paper(reading: &Reading, trials: &Trials, rates: &[Rate]) -> Result<Ve
             "A pad (its true K dashed) that the tool hardly enters: a few millimetres say little against a P(0) that was chosen for soft things.",
             with_truth(
                 medium.plot(NEWTON_PER_METRE, (0.0, 4000.0), 6.0, all_stiffness),
-                level(truth(Contact::Medium)[0]),
+                level(truth(PaperContact::Medium)[0]),
             ),
         ),
         figure(
             11,
             "Medium contact: damping by the four methods",
             "Each method's B on the pad; the truth is dashed.",
-            with_truth(medium.plot(NEWTON_SECOND, (-10.0, 30.0), 6.0, all_damping), level(truth(Contact::Medium)[1])),
+            with_truth(
+                medium.plot(NEWTON_SECOND, (-10.0, 30.0), 6.0, all_damping),
+                level(truth(PaperContact::Medium)[1]),
+            ),
         ),
         figure(
             12,
@@ -217,7 +225,7 @@ fn level(value: f64) -> Vec<(f64, f64)> {
 }
 
 /// K and B of a rig file, at the surface and at the start; NaN where there is no contact.
-fn truth(contact: Contact) -> [f64; 2] {
+fn truth(contact: PaperContact) -> [f64; 2] {
     let found = contact.rig().ok().and_then(|rig| rig.contact);
     found.map_or([f64::NAN; 2], |contact| [contact.stiffness, contact.damping])
 }
@@ -263,7 +271,7 @@ fn rates_plot(rates: &[Rate]) -> Plot {
 ///
 /// # Errors
 /// None for these settings.
-pub fn of_better(steps: &Trial, flights: &[force::Row]) -> Result<Vec<Figure>> {
+pub fn of_better(steps: &PaperTrial, flights: &[force_control::ForceControlResult]) -> Result<Vec<Figure>> {
     let shown = [
         ("EWRLS", Estimator::Ewrls { window: 300, covariance: 10.0 }, false),
         ("BLS 300", Estimator::Bls(300), false),
@@ -274,10 +282,10 @@ pub fn of_better(steps: &Trial, flights: &[force::Row]) -> Result<Vec<Figure>> {
     let samples = steps.samples(1);
     let mut runs = Vec::new();
     for ((name, estimator, is_matched), colour) in shown.into_iter().zip([0, 8, 2, 3, 1]) {
-        runs.push((name, colour, estimator.run(better::front_end(is_matched), &samples)?));
+        runs.push((name, colour, estimator.run(comparison::front_end(is_matched), &samples)?));
     }
     let begin = runs.last().map_or(0, |(.., estimates)| super::measure::contact(estimates).start);
-    let [up, _] = better::JUMPS;
+    let [up, _] = comparison::JUMPS;
     let around = |row: usize, value: fn(&[Estimate]) -> Vec<f64>| -> Vec<Curve> {
         let curve = |(name, at, estimates): &(&str, usize, Vec<Estimate>)| {
             let points = value(estimates).into_iter().enumerate().map(|(k, y)| (k as f64 - row as f64, y));
@@ -326,12 +334,15 @@ pub fn of_better(steps: &Trial, flights: &[force::Row]) -> Result<Vec<Figure>> {
     ])
 }
 
-fn flights_plot(flights: &[force::Row]) -> Plot {
-    let [up, _] = better::JUMPS;
-    let shown = |row: &&force::Row| {
-        !matches!(row.source, Source::Estimated(Estimator::Sprls { .. } | Estimator::Blmf(_) | Estimator::Adaptive, _))
+fn flights_plot(flights: &[force_control::ForceControlResult]) -> Plot {
+    let [up, _] = comparison::JUMPS;
+    let shown = |row: &&force_control::ForceControlResult| {
+        !matches!(
+            row.source,
+            StiffnessSource::Estimated(Estimator::Sprls { .. } | Estimator::Blmf(_) | Estimator::Adaptive, _)
+        )
     };
-    let curve = |(at, row): (usize, &force::Row)| {
+    let curve = |(at, row): (usize, &force_control::ForceControlResult)| {
         let points = row.flight.time.iter().zip(&row.flight.force).map(|(t, f)| (1e3 * t - up as f64, *f));
         curve(&row.source.name(), [8, 0, 1, 4, 6][at.min(4)], points)
     };

@@ -4,7 +4,7 @@ use palpate::{Estimate, Flags, Sample};
 
 /// A mean and its spread over trials: the sample standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Spread {
+pub struct MeanAndDeviation {
     /// Mean.
     pub mean: f64,
     /// Standard deviation; zero of a single value.
@@ -13,7 +13,7 @@ pub struct Spread {
     pub greatest: f64,
 }
 
-impl Spread {
+impl MeanAndDeviation {
     /// Of `values`; NaN where there are none.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.into_iter().collect();
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_spread_is_that_of_a_sample() {
-        let spread = Spread::of([1.0, 2.0, 3.0]);
+        let spread = MeanAndDeviation::of([1.0, 2.0, 3.0]);
         assert!((spread.mean - 2.0).abs() < 1e-12 && (spread.deviation - 1.0).abs() < 1e-12, "{spread:?}");
         assert!((median([3.0, 1.0, 2.0]) - 2.0).abs() < 1e-12);
     }

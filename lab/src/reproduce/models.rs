@@ -4,8 +4,8 @@ use anyhow::{Result, anyhow};
 use palpate::{ChangeConfig, ContactModel, ModelStream, ParameterRls, ParameterRlsConfig, contact_plane};
 use rayon::prelude::*;
 
-use super::bench::{Contact, Trial};
-use super::measure::Spread;
+use super::measure::MeanAndDeviation;
+use super::paper_contact::{PaperContact, PaperTrial};
 use crate::effects::{find, to_table};
 use crate::rig::{Coordinate, Rig};
 
@@ -22,7 +22,7 @@ pub struct Parameter {
     /// What the rig holds.
     pub truth: f64,
     /// What was found, mean and spread over trials.
-    pub found: Spread,
+    pub found: MeanAndDeviation,
     /// Half-width of the 95 % interval, mean over trials.
     pub half_width: f64,
 }
@@ -39,9 +39,9 @@ pub struct Case {
     /// By the right law.
     pub parameters: Vec<Parameter>,
     /// K and B by spring and damper alone.
-    pub plain: [Spread; 2],
+    pub plain: [MeanAndDeviation; 2],
     /// RMSE% by the right law and by spring and damper alone.
-    pub rmse: [Spread; 2],
+    pub rmse: [MeanAndDeviation; 2],
 }
 
 struct Plan {
@@ -59,7 +59,7 @@ const B: (&str, &str) = ("B", "N s/m");
 
 fn plans() -> Result<Vec<Plan>> {
     let base = |stiffness: f64, damping: f64, effect: Option<(&str, usize, &[f64])>| -> Result<Rig> {
-        let mut rig = Contact::Steps.rig()?;
+        let mut rig = PaperContact::Steps.rig()?;
         rig.effects.retain(|effect| effect.name == "coulomb_friction");
         if let Some(contact) = &mut rig.contact {
             (contact.stiffness, contact.damping) = (stiffness, damping);
@@ -144,7 +144,7 @@ fn case(plan: &Plan) -> Result<Case> {
     // The estimators believe the surface at zero, wherever it is.
     let surface = rig.surface();
     rig.name = plan.name.into();
-    let mut trials = Trial::several(&rig, SEEDS, false)?;
+    let mut trials = PaperTrial::several(&rig, SEEDS, false)?;
     for trial in &mut trials {
         trial.position.iter_mut().for_each(|x| *x += surface);
     }
@@ -169,8 +169,8 @@ fn case(plan: &Plan) -> Result<Case> {
                 symbol,
                 unit,
                 truth: plan.truth[j],
-                found: Spread::of(own.iter().map(value)),
-                half_width: Spread::of(own.iter().map(width)).mean,
+                found: MeanAndDeviation::of(own.iter().map(value)),
+                half_width: MeanAndDeviation::of(own.iter().map(width)).mean,
             }
         })
         .collect();
@@ -179,8 +179,8 @@ fn case(plan: &Plan) -> Result<Case> {
         equation: plan.equation,
         regressor: plan.model.name(),
         parameters,
-        plain: [0, 1].map(|j| Spread::of(plain.iter().map(|found| f64::from(found.parameters[j])))),
-        rmse: [&own, &plain].map(|all| Spread::of(all.iter().map(|found| found.rmse))),
+        plain: [0, 1].map(|j| MeanAndDeviation::of(plain.iter().map(|found| f64::from(found.parameters[j])))),
+        rmse: [&own, &plain].map(|all| MeanAndDeviation::of(all.iter().map(|found| found.rmse))),
     })
 }
 
@@ -190,7 +190,7 @@ struct Found {
     rmse: f64,
 }
 
-fn identify<const P: usize>(model: ContactModel, spreads: [f32; P], trials: &[Trial]) -> Result<Vec<Found>> {
+fn identify<const P: usize>(model: ContactModel, spreads: [f32; P], trials: &[PaperTrial]) -> Result<Vec<Found>> {
     let front_end = palpate::FrontEndConfig::BENCH;
     let identified = trials.iter().map(|trial| {
         let mut stream = ModelStream::new(front_end, model).map_err(|error| anyhow!("{error}"))?;

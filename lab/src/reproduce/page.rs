@@ -1,8 +1,8 @@
 //! The page: the study from top to bottom, in words that need no paper.
 
-mod better;
 mod claims;
-mod force;
+mod comparison;
+mod force_control;
 mod models;
 mod tables;
 
@@ -12,8 +12,8 @@ use std::io::{self, Write};
 use super::Results;
 use super::claim::distance;
 use super::figures::Figure;
-use super::measure::Spread;
-use super::study::{Study, TRIALS};
+use super::measure::MeanAndDeviation;
+use super::paper_tables::{Study, TRIALS};
 use crate::page::shell;
 
 const STYLE: &str = include_str!("../../assets/reproduce.css");
@@ -31,9 +31,9 @@ pub fn write(results: &Results, out: &mut impl Write) -> io::Result<()> {
         (figures("figures", "Figures 2 to 12", "One trial of each contact, seed 1. The numbers of the figures are those of the paper's subjects: \
             the motion and the force, each contact's K and B, the windows, the rates.", &results.figures))
         (claims::section(results))
-        (better::section(results))
+        (comparison::section(results))
         (models::section(&results.models))
-        (force::section(results))
+        (force_control::section(results))
         (made(results))
     };
     out.write_all(body.0.as_bytes())?;
@@ -50,7 +50,7 @@ fn header(results: &Results) -> Markup {
                 "A tool presses on something and measures depth and force. How stiff and how damped is what it touches, and how soon is that known? \
                  A paper compared four methods on a bench; here they run on that bench, simulated. "
                 strong { (held) " of its " (results.claims.len()) " claims" } " hold under some reading of what it leaves open, "
-                "and " strong { (better::in_one_sentence(results)) } "."
+                "and " strong { (comparison::in_one_sentence(results)) } "."
             }
             p.law { "The law is F = K x + B v: force, depth and its rate, stiffness K and damping B. RMSE% is what an estimate did not foresee of the force: 100 rms(F − K x − B v) / rms(F), with the K and B from before each sample." }
         }
@@ -117,8 +117,8 @@ fn made(results: &Results) -> Markup {
         section #made aria-labelledby="made-title" {
             h2 #made-title { "How this was made" }
             p {
-                "By " code { "palpate reproduce" } ", seeds 1, 2, ...: " (TRIALS) " trials of each contact for the tables, " (super::better::SEEDS)
-                " of the steps, " (super::models::SEEDS) " for each other law, " (super::force::SEEDS) " flights of each controller. Every figure comes from the library that runs on the drive, in its single precision; nothing is written down by hand but the paper's own figures. "
+                "By " code { "palpate reproduce" } ", seeds 1, 2, ...: " (TRIALS) " trials of each contact for the tables, " (super::comparison::SEEDS)
+                " of the steps, " (super::models::SEEDS) " for each other law, " (super::force_control::SEEDS) " flights of each controller. Every figure comes from the library that runs on the drive, in its single precision; nothing is written down by hand but the paper's own figures. "
                 (results.rates.words) " No board was measured. Docs: " code { "docs/paper.md" } "."
             }
         }
@@ -126,7 +126,7 @@ fn made(results: &Results) -> Markup {
 }
 
 /// Mean and spread, to `decimals`.
-fn spread(value: &Spread, decimals: usize) -> Markup {
+fn spread(value: &MeanAndDeviation, decimals: usize) -> Markup {
     html! { (number(value.mean, decimals)) small { "± " (number(value.deviation, decimals)) } }
 }
 

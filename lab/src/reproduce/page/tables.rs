@@ -3,11 +3,11 @@
 use maud::{Markup, html};
 
 use super::super::Results;
-use super::super::bench::Contact;
-use super::super::measure::Spread;
+use super::super::measure::MeanAndDeviation;
 use super::super::paper::{METHODS, PC_HZ, RMSE_BY_CONTACT, RMSE_BY_WINDOW, STD_BY_WINDOW, WINDOWS};
+use super::super::paper_contact::PaperContact;
+use super::super::paper_tables::{Cell, Study};
 use super::super::rates::CLOCK_HZ;
-use super::super::study::{Cell, Study};
 use super::{number, spread, wide};
 
 pub(super) fn section(results: &Results) -> Markup {
@@ -28,7 +28,7 @@ fn by_contact(study: &Study) -> Markup {
     let table = html! {
         table {
             caption { "Table I. RMSE% over the whole contact, window 300; below, without its first 0.3 s; and seconds until K stays within 10 %" }
-            thead { tr { th scope="col" { "Method" } @for contact in Contact::PAPER { th scope="col" { (contact.name()) } th scope="col" { "after 0.3 s" } th scope="col" { "settled, s" } } } }
+            thead { tr { th scope="col" { "Method" } @for contact in PaperContact::PAPER { th scope="col" { (contact.name()) } th scope="col" { "after 0.3 s" } th scope="col" { "settled, s" } } } }
             tbody {
                 @for (method, name) in METHODS.iter().enumerate() {
                     tr {
@@ -47,7 +47,12 @@ fn by_contact(study: &Study) -> Markup {
     wide("Table I", &table)
 }
 
-fn by_window(study: &Study, caption: &str, paper: &[Option<[f64; 2]>; 4], value: fn(&Cell) -> Spread) -> Markup {
+fn by_window(
+    study: &Study,
+    caption: &str,
+    paper: &[Option<[f64; 2]>; 4],
+    value: fn(&Cell) -> MeanAndDeviation,
+) -> Markup {
     let own = |method: usize, at: usize| -> Option<f64> {
         let [short, long] = paper[method]?;
         match at {

@@ -4,17 +4,17 @@ use anyhow::Result;
 use palpate::Estimate;
 use rayon::prelude::*;
 
-use super::bench::{Contact, Trial};
 use super::estimator::{Estimator, PAPER_COVARIANCE, PAPER_GAMMA, as_the_paper};
-use super::measure::{Spread, contact, median, rmse_percent, settling, stiffness};
+use super::measure::{MeanAndDeviation, contact, median, rmse_percent, settling, stiffness};
 use super::paper::WINDOWS;
+use super::paper_contact::{PaperContact, PaperTrial};
 
 /// How many trials a table averages.
 pub const TRIALS: u64 = 5;
 
 /// What the paper leaves open, decided in one way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
+pub struct PaperVariant {
     /// For the reader.
     pub name: &'static str,
     /// Every how many rows of the 1 kHz recording the estimators are fed.
@@ -27,7 +27,7 @@ pub struct Reading {
     pub gamma: f32,
 }
 
-impl Reading {
+impl PaperVariant {
     /// Samples at 1 kHz, settings as printed.
     pub const FULL: Self = Self {
         name: "1 kHz",
@@ -59,20 +59,20 @@ impl Reading {
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
     /// RMSE% over all of the contact.
-    pub rmse: Spread,
+    pub rmse: MeanAndDeviation,
     /// The same without its first 0.3 s.
-    pub rmse_later: Spread,
+    pub rmse_later: MeanAndDeviation,
     /// Standard deviation of K, N/m, from 1 s after the touch on.
-    pub deviation: Spread,
+    pub deviation: MeanAndDeviation,
     /// Seconds from the touch until K stays, for the first 2 s, within 10 % of its median over the third.
-    pub converged: Spread,
+    pub converged: MeanAndDeviation,
 }
 
 /// All that one reading gives.
 #[derive(Debug, Clone)]
 pub struct Study {
     /// Which one.
-    pub reading: Reading,
+    pub reading: PaperVariant,
     /// By method and contact, window 300.
     pub by_contact: [[Cell; 3]; 4],
     /// By method and window, on the soft contact.
@@ -80,14 +80,15 @@ pub struct Study {
 }
 
 /// The trials of the paper's three contacts.
-pub type Trials = [Vec<Trial>; 3];
+pub type Trials = [Vec<PaperTrial>; 3];
 
 /// Simulates them.
 ///
 /// # Errors
 /// None for the rig files of this repository.
 pub fn trials() -> Result<Trials> {
-    let [soft, varying, medium] = Contact::PAPER.map(|contact| Trial::several(&contact.rig()?, TRIALS, false));
+    let [soft, varying, medium] =
+        PaperContact::PAPER.map(|contact| PaperTrial::several(&contact.rig()?, TRIALS, false));
     Ok([soft?, varying?, medium?])
 }
 
@@ -96,8 +97,8 @@ impl Study {
     ///
     /// # Errors
     /// None for the settings of a reading.
-    pub fn of(reading: Reading, trials: &Trials, done: &(dyn Fn() + Sync)) -> Result<Self> {
-        let cells = |trials: &[Trial], window: u16| -> Result<[Cell; 4]> {
+    pub fn of(reading: PaperVariant, trials: &Trials, done: &(dyn Fn() + Sync)) -> Result<Self> {
+        let cells = |trials: &[PaperTrial], window: u16| -> Result<[Cell; 4]> {
             let cells = reading.estimators(window).map(|estimator| cell(reading, estimator, trials));
             done();
             let [a, b, c, d] = cells;
@@ -110,7 +111,7 @@ impl Study {
     }
 }
 
-fn cell(reading: Reading, estimator: Estimator, trials: &[Trial]) -> Result<Cell> {
+fn cell(reading: PaperVariant, estimator: Estimator, trials: &[PaperTrial]) -> Result<Cell> {
     let rate = 1000.0 / reading.every as f64;
     let config = as_the_paper(1e-3 * reading.every as f32);
     let rows = |seconds: f64| (seconds * rate).round() as usize;
@@ -123,12 +124,12 @@ fn cell(reading: Reading, estimator: Estimator, trials: &[Trial]) -> Result<Cell
         let values = [
             rmse_percent(&estimates, &samples, 0),
             rmse_percent(&estimates, &samples, rows(0.3)),
-            Spread::of(stiffness(later)).deviation,
+            MeanAndDeviation::of(stiffness(later)).deviation,
             convergence(touched, rate),
         ];
         found.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
     }
-    let [rmse, rmse_later, deviation, converged] = found.map(Spread::of);
+    let [rmse, rmse_later, deviation, converged] = found.map(MeanAndDeviation::of);
     Ok(Cell { rmse, rmse_later, deviation, converged })
 }
 

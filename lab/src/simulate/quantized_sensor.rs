@@ -5,7 +5,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// A channel's sensor.
 #[derive(Debug, Clone, Copy)]
-pub struct Gauge {
+pub struct QuantizedSensor {
     /// Step; 0: continuous.
     pub resolution: f64,
     /// Standard deviation before rounding.
@@ -14,10 +14,10 @@ pub struct Gauge {
     pub zero: f64,
 }
 
-impl Gauge {
+impl QuantizedSensor {
     /// What the sensor shows for `truth`.
-    pub fn read(&self, truth: f64, chance: &mut impl Rng) -> f64 {
-        let noise: f64 = if self.noise > 0.0 { StandardNormal.sample(chance) } else { 0.0 };
+    pub fn read(&self, truth: f64, rng: &mut impl Rng) -> f64 {
+        let noise: f64 = if self.noise > 0.0 { StandardNormal.sample(rng) } else { 0.0 };
         rounded(truth + self.zero + self.noise * noise, self.resolution)
     }
 }

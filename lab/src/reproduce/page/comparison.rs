@@ -3,12 +3,12 @@
 use maud::{Markup, html};
 
 use super::super::Results;
-use super::super::better::{Row, SEEDS};
+use super::super::comparison::{ComparisonRow, SEEDS};
 use super::super::estimator::Estimator;
 use super::{grid, number, spread, wide};
 
 /// What was aimed at: words, and whether a row meets it.
-type Aim = (&'static str, fn(&Row) -> bool);
+type Aim = (&'static str, fn(&ComparisonRow) -> bool);
 
 const AIMS: [Aim; 10] = [
     ("", |_| true),
@@ -23,14 +23,14 @@ const AIMS: [Aim; 10] = [
     ("90 to 99", |row| (90.0..=99.0).contains(&row.covered_damping.mean)),
 ];
 
-fn taken(results: &Results) -> Option<&Row> {
+fn taken(results: &Results) -> Option<&ComparisonRow> {
     results.better.iter().find(|row| row.estimator == Estimator::Cusum)
 }
 
 /// The gain, for the head of the page.
 pub(super) fn in_one_sentence(results: &Results) -> String {
     let paper = results.better.iter().filter(|row| !row.matched);
-    let best = |value: fn(&Row) -> f64| paper.clone().map(value).fold(f64::INFINITY, f64::min);
+    let best = |value: fn(&ComparisonRow) -> f64| paper.clone().map(value).fold(f64::INFINITY, f64::min);
     match taken(results) {
         Some(row) => format!(
             "a recursion that begins again at a change knows K {:.0} ms after the touch and {:.0} ms after a jump of it, where the best of the four need {:.0} and {:.0} ms",
@@ -81,7 +81,7 @@ fn table(results: &Results) -> Markup {
     wide("Methods where the truth is known", &table)
 }
 
-fn line(results: &Results, row: &Row) -> Markup {
+fn line(results: &Results, row: &ComparisonRow) -> Markup {
     let values = [
         (&row.onset, 0),
         (&row.up, 0),
@@ -128,8 +128,9 @@ fn steps() -> Markup {
 }
 
 fn advice(results: &Results) -> Markup {
-    let figure =
-        |value: fn(&Row) -> f64, decimals| taken(results).map_or_else(String::new, |row| number(value(row), decimals));
+    let figure = |value: fn(&ComparisonRow) -> f64, decimals| {
+        taken(results).map_or_else(String::new, |row| number(value(row), decimals))
+    };
     html! {
         div.advice {
             h3 { "Which to take" }

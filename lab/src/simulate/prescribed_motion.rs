@@ -5,18 +5,18 @@ use crate::plant::State;
 use crate::rig::{Contact, Reference};
 
 /// Instants of the contact law a row: its memories are exact between two instants for a motion that is straight there.
-const FINENESS: f64 = 16.0;
+const STEPS_PER_ROW: f64 = 16.0;
 
 /// Share of the reference's shortest time over which its acceleration is taken.
-const NEAR: f64 = 1e-5;
+const DIFFERENCE_STEP_FRACTION: f64 = 1e-5;
 
 /// A led tool and its contact.
-pub struct Led<'a> {
+pub struct PrescribedMotion<'a> {
     reference: Reference,
     surface: f64,
     along: Option<Along<'a>>,
     /// Instants a row.
-    fineness: f64,
+    steps_per_row: f64,
     time: f64,
     /// Whether the first instant has been.
     has_begun: bool,
@@ -26,19 +26,19 @@ pub struct Led<'a> {
 /// The reference's acceleration at `time`.
 fn acceleration(reference: &Reference, time: f64) -> f64 {
     let swing = (std::f64::consts::TAU * reference.sine_frequency_hz).recip();
-    let near = NEAR * reference.smoothing_s.min(swing);
+    let near = DIFFERENCE_STEP_FRACTION * reference.smoothing_s.min(swing);
     let (before, after) = ((time - near).max(0.0), time + near);
     (reference.at(after).1 - reference.at(before).1) / (after - before)
 }
 
-impl<'a> Led<'a> {
+impl<'a> PrescribedMotion<'a> {
     /// Along `reference`, whose depths count from the surface.
     pub fn new(reference: Reference, contact: Option<Contact>, actives: &[Active<'a>]) -> Self {
         Self {
             reference,
             surface: contact.map_or(0.0, |contact| contact.surface),
             along: contact.map(|contact| Along::new(contact, actives)),
-            fineness: if actives.is_empty() { 1.0 } else { FINENESS },
+            steps_per_row: if actives.is_empty() { 1.0 } else { STEPS_PER_ROW },
             time: 0.0,
             has_begun: false,
             force: 0.0,
@@ -48,7 +48,7 @@ impl<'a> Led<'a> {
     /// Walks on to `until`.
     pub fn advance(&mut self, until: f64) {
         let (start, span) = (self.time, until - self.time);
-        let steps = if self.has_begun { self.fineness } else { 1.0 };
+        let steps = if self.has_begun { self.steps_per_row } else { 1.0 };
         for number in 1..=steps as usize {
             self.touch(start + span * (number as f64 / steps), span / steps);
         }

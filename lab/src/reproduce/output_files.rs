@@ -5,13 +5,13 @@ use std::path::Path;
 use anyhow::{Context as _, Result};
 
 use super::Results;
-use super::bench::Contact;
-use super::measure::Spread;
+use super::measure::MeanAndDeviation;
 use super::paper::{METHODS, RMSE_BY_CONTACT, RMSE_BY_WINDOW, STD_BY_WINDOW, WINDOWS};
+use super::paper_contact::PaperContact;
 use crate::outfile::OutFile;
 
 /// Every output, opened before the long run.
-pub struct Files {
+pub struct OutputFiles {
     page: OutFile,
     csv: Vec<(&'static str, OutFile)>,
     figures: Vec<OutFile>,
@@ -23,7 +23,7 @@ const TABLES: [&str; 6] = ["tables.csv", "rates.csv", "claims.csv", "better.csv"
 /// Numbers of the figures.
 pub const FIGURES: std::ops::RangeInclusive<usize> = 2..=16;
 
-impl Files {
+impl OutputFiles {
     /// Opens them in `folder`, which is made where there is none.
     ///
     /// # Errors
@@ -76,7 +76,7 @@ fn put(file: &mut OutFile, text: &str) -> Result<()> {
 
 /// Names and texts of the rig files.
 pub fn all_rigs() -> impl Iterator<Item = (&'static str, &'static str)> {
-    Contact::PAPER.into_iter().chain([Contact::Steps]).map(Contact::file)
+    PaperContact::PAPER.into_iter().chain([PaperContact::Steps]).map(PaperContact::file)
 }
 
 fn table(name: &str, results: &Results) -> Result<String> {
@@ -99,7 +99,7 @@ fn words(values: &[&str]) -> Vec<String> {
     values.iter().map(|value| (*value).to_owned()).collect()
 }
 
-fn both(spread: &Spread) -> [String; 2] {
+fn both(spread: &MeanAndDeviation) -> [String; 2] {
     [spread.mean.to_string(), spread.deviation.to_string()]
 }
 
@@ -110,15 +110,16 @@ fn or_empty(value: Option<f64>) -> String {
 fn tables(results: &Results) -> Vec<Vec<String>> {
     let mut rows = vec![words(&["reading", "table", "method", "contact", "window", "mean", "deviation", "paper"])];
     for study in &results.studies {
-        let mut line = |table: &str, method: usize, contact: &str, window: u16, value: &Spread, paper: Option<f64>| {
-            let [mean, deviation] = both(value);
-            let head = [study.reading.name, table, METHODS[method], contact].map(str::to_owned);
-            rows.push(head.into_iter().chain([window.to_string(), mean, deviation, or_empty(paper)]).collect());
-        };
+        let mut line =
+            |table: &str, method: usize, contact: &str, window: u16, value: &MeanAndDeviation, paper: Option<f64>| {
+                let [mean, deviation] = both(value);
+                let head = [study.reading.name, table, METHODS[method], contact].map(str::to_owned);
+                rows.push(head.into_iter().chain([window.to_string(), mean, deviation, or_empty(paper)]).collect());
+            };
         for (method, cells) in study.by_contact.iter().enumerate() {
             for (at, cell) in cells.iter().enumerate() {
-                line("I", method, Contact::PAPER[at].name(), 300, &cell.rmse, Some(RMSE_BY_CONTACT[method][at]));
-                line("convergence, s", method, Contact::PAPER[at].name(), 300, &cell.converged, None);
+                line("I", method, PaperContact::PAPER[at].name(), 300, &cell.rmse, Some(RMSE_BY_CONTACT[method][at]));
+                line("convergence, s", method, PaperContact::PAPER[at].name(), 300, &cell.converged, None);
             }
         }
         for (at, (cells, window)) in study.by_window.iter().zip(WINDOWS).enumerate() {

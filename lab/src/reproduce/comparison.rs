@@ -4,9 +4,9 @@ use anyhow::Result;
 use palpate::{Estimate, Flags, StreamConfig};
 use rayon::prelude::*;
 
-use super::bench::{Contact, Trial};
 use super::estimator::{Estimator, PAPER_COVARIANCE, PAPER_GAMMA, as_the_paper, matched};
-use super::measure::{Spread, contact, coverage, damping, rmse_percent, settling, stiffness};
+use super::measure::{MeanAndDeviation, contact, coverage, damping, rmse_percent, settling, stiffness};
+use super::paper_contact::{PaperContact, PaperTrial};
 
 /// Trials, each with a noise and a surface of its own.
 pub const SEEDS: u64 = 20;
@@ -23,34 +23,34 @@ const TRANSIENT: usize = 100;
 
 /// One method under all measures, mean and spread over the seeds.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub struct ComparisonRow {
     /// Which.
     pub estimator: Estimator,
     /// Behind a matched filter of 40 Hz, or the paper's velocity.
     pub matched: bool,
     /// Milliseconds from the touch until K stays within 10 %.
-    pub onset: Spread,
+    pub onset: MeanAndDeviation,
     /// The same from the jump up.
-    pub up: Spread,
+    pub up: MeanAndDeviation,
     /// The same from the jump down.
-    pub down: Spread,
+    pub down: MeanAndDeviation,
     /// Standard deviation of K at 900 N/m, %.
-    pub deviation: Spread,
+    pub deviation: MeanAndDeviation,
     /// Bias of K there, %.
-    pub bias_stiffness: Spread,
+    pub bias_stiffness: MeanAndDeviation,
     /// Bias of B there, %.
-    pub bias_damping: Spread,
+    pub bias_damping: MeanAndDeviation,
     /// RMSE% over the contact.
-    pub rmse: Spread,
+    pub rmse: MeanAndDeviation,
     /// Share of rows, in %, whose 95 % interval of K holds it, 0.1 s after each event.
-    pub covered_stiffness: Spread,
+    pub covered_stiffness: MeanAndDeviation,
     /// The same of B.
-    pub covered_damping: Spread,
+    pub covered_damping: MeanAndDeviation,
     /// Changes found where there was none, in all trials together.
     pub false_alarms: usize,
 }
 
-impl Row {
+impl ComparisonRow {
     /// The estimator, and what it is fed with.
     pub fn name(&self) -> String {
         let front_end = if self.matched { "matched, " } else { "" };
@@ -90,8 +90,8 @@ pub fn compared() -> Vec<(Estimator, bool)> {
 ///
 /// # Errors
 /// None for the rig file of this repository.
-pub fn trials() -> Result<Vec<Trial>> {
-    Trial::several(&Contact::Steps.rig()?, SEEDS, true)
+pub fn trials() -> Result<Vec<PaperTrial>> {
+    PaperTrial::several(&PaperContact::Steps.rig()?, SEEDS, true)
 }
 
 /// The front end of a row.
@@ -103,7 +103,7 @@ pub fn front_end(is_matched: bool) -> StreamConfig {
 ///
 /// # Errors
 /// None for these settings.
-pub fn study(trials: &[Trial], done: &(dyn Fn() + Sync)) -> Result<Vec<Row>> {
+pub fn study(trials: &[PaperTrial], done: &(dyn Fn() + Sync)) -> Result<Vec<ComparisonRow>> {
     compared()
         .into_par_iter()
         .map(|(estimator, is_matched)| {
@@ -114,7 +114,7 @@ pub fn study(trials: &[Trial], done: &(dyn Fn() + Sync)) -> Result<Vec<Row>> {
         .collect()
 }
 
-fn row(estimator: Estimator, is_matched: bool, trials: &[Trial]) -> Result<Row> {
+fn row(estimator: Estimator, is_matched: bool, trials: &[PaperTrial]) -> Result<ComparisonRow> {
     let mut columns: [Vec<f64>; 9] = Default::default();
     let mut false_alarms = 0;
     for trial in trials {
@@ -125,8 +125,8 @@ fn row(estimator: Estimator, is_matched: bool, trials: &[Trial]) -> Result<Row> 
         let parts = [touched.start..up, up..down, down..touched.end];
         let milliseconds = |part: usize| settling(&estimates[parts[part].clone()], STIFFNESS[part], 0.1) as f64;
         let steady = &estimates[up + 2000..down];
-        let k = Spread::of(stiffness(steady));
-        let b = Spread::of(damping(steady));
+        let k = MeanAndDeviation::of(stiffness(steady));
+        let b = MeanAndDeviation::of(damping(steady));
         let covered = parts.clone().map(|part| inside(&estimates[part.start + TRANSIENT..part.end], part.start));
         let rows = covered.iter().map(|(rows, _)| *rows as f64).sum::<f64>();
         let share = |at: usize| 100.0 * covered.iter().map(|(n, c)| *n as f64 * c[at]).sum::<f64>() / rows;
@@ -147,8 +147,8 @@ fn row(estimator: Estimator, is_matched: bool, trials: &[Trial]) -> Result<Row> 
         false_alarms += alarms.count();
     }
     let [onset, up, down, deviation, bias_stiffness, bias_damping, rmse, covered_stiffness, covered_damping] =
-        columns.map(Spread::of);
-    Ok(Row {
+        columns.map(MeanAndDeviation::of);
+    Ok(ComparisonRow {
         estimator,
         matched: is_matched,
         onset,

@@ -9,36 +9,36 @@
 //! nominal plant to some parts in a hundred thousand (a test holds it to ten).
 
 use crate::effects::{Active, Along, Place};
-use crate::plant::{MOST_STEPS, Plant, State};
+use crate::plant::{MAX_STEPS, Plant, State};
 use crate::rig::{Contact, Drive};
 
-use super::chain::{Chain, Instant, Pull};
+use super::drive_effects::{DriveEffects, DriveResponse, Instant};
 
 /// Steps per fastest time constant.
-const FINENESS: f64 = 20.0;
+const STEPS_PER_TIME_CONSTANT: f64 = 20.0;
 
 /// Deviation of the contact law's blur in steps: the least at which a corner's place between two steps does not show.
-const BLUR: f64 = 0.5;
+const CONTACT_BLUR_STEPS: f64 = 0.5;
 
 /// Refinements of an acceleration that the contact force depends on; two where that is linear.
-const MOST_TRIES: usize = 40;
+const MAX_ITERATIONS: usize = 40;
 
 /// Highest damping ratio of a link between motor and tool.
-const MOST_LINK_DAMPING: f64 = 0.3;
+const MAX_LINK_DAMPING_RATIO: f64 = 0.3;
 
 /// The moving part, its contact and its drive, with what they carry along.
-pub struct Body<'a> {
+pub struct RigDynamics<'a> {
     plant: Plant,
     along: Option<Along<'a>>,
-    chain: Chain<'a>,
+    chain: DriveEffects<'a>,
     /// Longest step, s.
-    grain: f64,
+    max_step_s: f64,
     /// A small part of the travel, for a look at the slope of the contact law.
-    aside: f64,
+    probe_distance: f64,
     time: f64,
     /// Last step.
     step: f64,
-    last: Pull,
+    last: DriveResponse,
 }
 
 /// A rig's drive and contact as stiff, damped and light as its effects can make it by their parameters alone.
@@ -62,7 +62,7 @@ pub fn stiffest(drive: Drive, contact: Option<Contact>, actives: &[Active<'_>]) 
         }
         contact.stiffness += spring;
         if motor > 0.0 {
-            contact.damping += 2.0 * MOST_LINK_DAMPING * (spring * motor).sqrt();
+            contact.damping += 2.0 * MAX_LINK_DAMPING_RATIO * (spring * motor).sqrt();
             tool -= motor;
             lightest = lightest.min(motor);
         }
@@ -70,7 +70,7 @@ pub fn stiffest(drive: Drive, contact: Option<Contact>, actives: &[Active<'_>]) 
     Plant { drive: Drive { inertia: tool.min(lightest), ..drive }, contact: Some(contact) }
 }
 
-impl<'a> Body<'a> {
+impl<'a> RigDynamics<'a> {
     /// At rest at `position`. `longest` is the longest step in seconds, `travel` the way of the reference.
     pub fn new(
         drive: Drive,
@@ -84,12 +84,12 @@ impl<'a> Body<'a> {
         let mut body = Self {
             plant,
             along: contact.map(|contact| Along::new(contact, actives)),
-            chain: Chain::new(drive, actives),
-            grain: longest.min((plant.fastest_rate() * FINENESS).recip()),
-            aside: 1e-4 * travel,
+            chain: DriveEffects::new(drive, actives),
+            max_step_s: longest.min((plant.fastest_rate() * STEPS_PER_TIME_CONSTANT).recip()),
+            probe_distance: 1e-4 * travel,
             time: 0.0,
             step: 0.0,
-            last: Pull { acceleration: 0.0, rubs: false },
+            last: DriveResponse { acceleration: 0.0, has_friction: false },
         };
         // The first instant: memories begin with where the tool is.
         let at = Instant { time: 0.0, step: 0.0, position, velocity: 0.0, effort: 0.0 };
@@ -100,9 +100,9 @@ impl<'a> Body<'a> {
     /// The state at time `until`, the effort held.
     pub fn advance(&mut self, mut state: State, effort: f64, until: f64) -> State {
         let span = until - self.time;
-        let wanted = (span / self.grain).max(span * self.local_rate(state, effort) * FINENESS);
+        let wanted = (span / self.max_step_s).max(span * self.local_rate(state, effort) * STEPS_PER_TIME_CONSTANT);
         // A slope across a jump of the force has no bound; the jump itself asks for no shorter steps.
-        let steps = wanted.ceil().clamp(1.0, MOST_STEPS);
+        let steps = wanted.ceil().clamp(1.0, MAX_STEPS);
         // The effort has changed, and with it the acceleration that the next step begins with.
         self.last.acceleration = self.now(state, effort).1;
         let start = self.time;
@@ -117,7 +117,7 @@ impl<'a> Body<'a> {
     /// The contact force and the acceleration at this very instant.
     pub fn now(&mut self, state: State, effort: f64) -> (f64, f64) {
         let at = self.instant(state, effort);
-        self.keep();
+        self.save();
         let (force, pull) = self.balance(at, 0.0);
         self.rewind();
         (force, pull.acceleration)
@@ -130,17 +130,17 @@ impl<'a> Body<'a> {
     /// One step.
     fn go(&mut self, state: State, effort: f64, step: f64) -> State {
         let mut velocity = state.velocity + 0.5 * step * self.last.acceleration;
-        if self.last.rubs && velocity * state.velocity < 0.0 {
+        if self.last.has_friction && velocity * state.velocity < 0.0 {
             // Friction may bring the tool to rest within this step, and does not push it back.
             velocity = 0.5 * state.velocity;
         }
         let position = state.position + 0.25 * step * (state.velocity + velocity);
         let time = self.time + 0.5 * step;
         let at = Instant { time, step: 0.5 * (self.step + step), position, velocity, effort };
-        let (_, pull) = self.balance(at, BLUR * step);
+        let (_, pull) = self.balance(at, CONTACT_BLUR_STEPS * step);
         (self.step, self.last) = (step, pull);
         let end = state.velocity + step * pull.acceleration;
-        if pull.rubs && end * state.velocity < 0.0 {
+        if pull.has_friction && end * state.velocity < 0.0 {
             self.last.acceleration = 0.0;
             let way = -0.5 * state.velocity * state.velocity / pull.acceleration;
             return State { position: state.position + way, velocity: 0.0 };
@@ -152,11 +152,11 @@ impl<'a> Body<'a> {
     ///
     /// The force may depend on the acceleration (a mass that is carried along): a = p(F(a)), p falling with F and F
     /// rising with a, has one solution, between zero and p(F(0)).
-    fn balance(&mut self, at: Instant, blur: f64) -> (f64, Pull) {
+    fn balance(&mut self, at: Instant, blur: f64) -> (f64, DriveResponse) {
         if self.along.is_none() {
             return (0.0, self.chain.pull(at, 0.0));
         }
-        self.keep();
+        self.save();
         let (without, first) = self.attempt(at, 0.0, blur);
         self.rewind();
         let (force, pull) = self.attempt(at, first.acceleration, blur);
@@ -167,7 +167,7 @@ impl<'a> Body<'a> {
         let (mut low, mut low_rest) = (0.0, -first.acceleration);
         let (mut high, mut high_rest) = (first.acceleration, first.acceleration - pull.acceleration);
         let mut found = (force, pull);
-        for _ in 0..MOST_TRIES {
+        for _ in 0..MAX_ITERATIONS {
             let guess = high - high_rest * (high - low) / (high_rest - low_rest);
             self.rewind();
             found = self.attempt(at, guess, blur);
@@ -186,7 +186,7 @@ impl<'a> Body<'a> {
         found
     }
 
-    fn attempt(&mut self, at: Instant, acceleration: f64, blur: f64) -> (f64, Pull) {
+    fn attempt(&mut self, at: Instant, acceleration: f64, blur: f64) -> (f64, DriveResponse) {
         let step = |along: &mut Along<'_>| along.step(at.time, at.step, at.position, at.velocity, acceleration, blur);
         let force = self.along.as_mut().map_or(0.0, step);
         (force, self.chain.pull(at, force))
@@ -204,18 +204,18 @@ impl<'a> Body<'a> {
             along.rewind();
             force
         };
-        let faster = self.aside * rate;
-        let (here, deeper, quicker) = (force(0.0, 0.0), force(self.aside, 0.0), force(0.0, faster));
-        let stiffness = ((deeper - here) / self.aside).abs();
+        let faster = self.probe_distance * rate;
+        let (here, deeper, quicker) = (force(0.0, 0.0), force(self.probe_distance, 0.0), force(0.0, faster));
+        let stiffness = ((deeper - here) / self.probe_distance).abs();
         let damping = ((quicker - here) / faster).abs();
         let contact = Contact { surface: 0.0, stiffness, damping, bilateral: true };
         let slope = Plant { contact: Some(contact), ..self.plant }.fastest_rate();
         if slope.is_finite() { slope.max(rate) } else { rate }
     }
 
-    fn keep(&mut self) {
+    fn save(&mut self) {
         self.along.iter_mut().for_each(Along::keep);
-        self.chain.keep();
+        self.chain.save();
     }
 
     fn rewind(&mut self) {

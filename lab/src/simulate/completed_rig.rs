@@ -6,7 +6,7 @@ use crate::reference::{self, is_bench_sized};
 use crate::rig::{Control, Reference, Rig, Simulation};
 
 /// Most rows of a recording: 4 GB of text.
-const MOST_ROWS: f64 = 5e7;
+const MAX_ROWS: f64 = 5e7;
 
 /// The paper's controller.
 const CONTROL: Control = Control {
@@ -23,7 +23,7 @@ const FORCE_RESOLUTION: f64 = 0.05;
 const FORCE_NOISE: f64 = 0.09;
 
 /// A rig with nothing left open.
-pub struct Setting {
+pub struct CompletedRig {
     pub rig: Rig,
     pub effects: Vec<Resolved>,
     pub control: Control,
@@ -36,20 +36,20 @@ pub struct Setting {
     pub notices: Vec<String>,
 }
 
-impl Setting {
+impl CompletedRig {
     /// The effects at work.
     pub fn actives(&self) -> Vec<Active<'_>> {
         self.effects.iter().map(Resolved::active).collect()
     }
 
     /// Whether an effect acts on the motion or on the force behind it, not on its reading alone.
-    pub fn moves_otherwise(&self) -> bool {
+    pub fn has_motion_effects(&self) -> bool {
         self.effects.iter().any(|resolved| resolved.effect.card().place != Place::Sensor)
     }
 }
 
 /// Fills in what `rig` leaves open.
-pub fn complete(rig: &Rig, origin: &str) -> Result<Setting, InputError> {
+pub fn complete(rig: &Rig, origin: &str) -> Result<CompletedRig, InputError> {
     refuse_unable(rig, origin)?;
     let fits = is_bench_sized(rig);
     let mut notices = Vec::new();
@@ -74,7 +74,7 @@ pub fn complete(rig: &Rig, origin: &str) -> Result<Setting, InputError> {
         notices.push(format!("note: {origin}: what [sensors] leaves out is taken as ideal: no steps, no noise"));
     }
     let or_bench = |given: Option<f64>, bench: f64| given.unwrap_or(if fits { bench } else { 0.0 });
-    Ok(Setting {
+    Ok(CompletedRig {
         rig: rig.clone(),
         effects: resolve_all(rig, origin)?,
         control,
@@ -93,12 +93,12 @@ fn refuse_unable(rig: &Rig, origin: &str) -> Result<(), InputError> {
         return Err(InputError::new(origin, "neither [drive] nor [contact]", "at least one of them to simulate"));
     }
     let rows = rig.simulation.duration_s * rig.simulation.rate_hz;
-    if !(1.0..=MOST_ROWS).contains(&rows) {
+    if !(1.0..=MAX_ROWS).contains(&rows) {
         let place = format!("{origin}: [simulation]");
         return Err(InputError::new(
             place,
             format!("{rows} rows (duration_s times rate_hz)"),
-            format!("1 to {MOST_ROWS}"),
+            format!("1 to {MAX_ROWS}"),
         ));
     }
     Ok(())

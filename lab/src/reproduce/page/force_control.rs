@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::super::Results;
-use super::super::force::{Row, SEEDS, Source, WANTED};
+use super::super::force_control::{ForceControlResult, SEEDS, StiffnessSource, WANTED};
 use super::{grid, spread, wide};
 use crate::reproduce::estimator::Estimator;
 
@@ -31,7 +31,8 @@ pub(super) fn section(results: &Results) -> Markup {
 
 /// Which estimates leave more error than none.
 fn worse(results: &Results) -> String {
-    let none = results.force.iter().find(|row| row.source == Source::Fixed).map_or(f64::NAN, |row| row.rms.mean);
+    let none =
+        results.force.iter().find(|row| row.source == StiffnessSource::Fixed).map_or(f64::NAN, |row| row.rms.mean);
     let worse: Vec<String> =
         results.force.iter().filter(|row| row.rms.mean > none).map(|row| row.source.name()).collect();
     match worse.as_slice() {
@@ -40,9 +41,9 @@ fn worse(results: &Results) -> String {
     }
 }
 
-fn line(row: &Row) -> Markup {
+fn line(row: &ForceControlResult) -> Markup {
     html! {
-        tr.best[matches!(row.source, Source::Estimated(Estimator::Cusum, _))] {
+        tr.best[matches!(row.source, StiffnessSource::Estimated(Estimator::Cusum, _))] {
             th scope="row" { (row.source.name()) }
             td { (spread(&row.settled_up, 0)) }
             td { (spread(&row.settled_down, 0)) }

@@ -11,7 +11,7 @@ use crate::simulate;
 
 /// One of the paper's contacts, or the one of known steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Contact {
+pub enum PaperContact {
     /// A foam that stiffens with depth and relaxes.
     Soft,
     /// Bubble wrap that gives way.
@@ -22,7 +22,7 @@ pub enum Contact {
     Steps,
 }
 
-impl Contact {
+impl PaperContact {
     /// The paper's, in the order of its tables.
     pub const PAPER: [Self; 3] = [Self::Soft, Self::Varying, Self::Medium];
 
@@ -55,7 +55,7 @@ impl Contact {
 
 /// One simulated trial. Position counts from the surface that the estimators are told.
 #[derive(Debug, Clone)]
-pub struct Trial {
+pub struct PaperTrial {
     /// Seconds.
     pub time: Vec<f64>,
     /// Commanded position, m.
@@ -66,16 +66,16 @@ pub struct Trial {
     pub force: Vec<f64>,
 }
 
-impl Trial {
+impl PaperTrial {
     /// One trial of `rig` with the noise of `seed`. With `misplaced`, the surface lies anywhere within one count of the encoder about
     /// where the estimators believe it.
     pub fn of(rig: &Rig, seed: u64, misplaced: bool) -> Result<Self> {
         let mut rig = rig.clone();
         let believed = rig.surface();
         if let (true, Some(contact), Some(count)) = (misplaced, &mut rig.contact, rig.sensors.position_resolution) {
-            let mut chance = ChaCha8Rng::seed_from_u64(seed);
-            chance.set_stream(2);
-            contact.surface += count * (chance.random::<f64>() - 0.5);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            rng.set_stream(2);
+            contact.surface += count * (rng.random::<f64>() - 0.5);
         }
         let recording = simulate::simulate(&rig, seed, &rig.name)?.recording;
         let from = |column: Vec<f64>| column.into_iter().map(|value| value - believed).collect();

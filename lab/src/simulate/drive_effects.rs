@@ -4,7 +4,7 @@ use crate::effects::{Active, Memory, Place, Push, Stage};
 use crate::rig::Drive;
 
 /// Rounding of a balance, in units of its largest term: what is left below it is nothing.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const BALANCE_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 struct Term<'a> {
     active: Active<'a>,
@@ -13,7 +13,7 @@ struct Term<'a> {
 }
 
 /// The drive's effects and what they carry from one instant to the next.
-pub struct Chain<'a> {
+pub struct DriveEffects<'a> {
     drive: Drive,
     terms: Vec<Term<'a>>,
 }
@@ -35,14 +35,14 @@ pub struct Instant {
 
 /// What the drive does to the tool.
 #[derive(Debug, Clone, Copy)]
-pub struct Pull {
+pub struct DriveResponse {
     /// Of the tool.
     pub acceleration: f64,
     /// Whether dry friction takes part in it.
-    pub rubs: bool,
+    pub has_friction: bool,
 }
 
-impl<'a> Chain<'a> {
+impl<'a> DriveEffects<'a> {
     /// Those of `actives` that act in the drive, in the order of their stages.
     pub fn new(drive: Drive, actives: &[Active<'a>]) -> Self {
         let mut terms: Vec<_> = actives
@@ -54,12 +54,12 @@ impl<'a> Chain<'a> {
         Self { drive, terms }
     }
 
-    /// Marks this instant, for [`Chain::rewind`].
-    pub fn keep(&mut self) {
+    /// Marks this instant, for [`DriveEffects::rewind`].
+    pub fn save(&mut self) {
         self.terms.iter_mut().for_each(|term| term.kept = term.memory);
     }
 
-    /// Takes back every step since the last [`Chain::keep`].
+    /// Takes back every step since the last [`DriveEffects::save`].
     pub fn rewind(&mut self) {
         self.terms.iter_mut().for_each(|term| term.memory = term.kept);
     }
@@ -67,7 +67,7 @@ impl<'a> Chain<'a> {
     /// The acceleration of the tool where the contact bears `force`.
     ///
     /// A tool that stands still is held by friction as long as friction can: its acceleration is then exactly zero.
-    pub fn pull(&mut self, at: Instant, force: f64) -> Pull {
+    pub fn pull(&mut self, at: Instant, force: f64) -> DriveResponse {
         let mut push = Push {
             time: at.time,
             step: at.step,
@@ -103,9 +103,9 @@ impl<'a> Chain<'a> {
         let free = push.rest();
         act(frictions, &mut push);
         let rest = push.rest();
-        let rubs = rest != free;
+        let has_friction = rest != free;
         let size = push.effort.abs() + push.force.abs() + push.resistance.abs();
-        let is_held = rubs && push.still > 0.0 && rest.abs() <= ROUNDING * size;
-        Pull { acceleration: if is_held { 0.0 } else { rest / push.inertia }, rubs }
+        let is_held = has_friction && push.still > 0.0 && rest.abs() <= BALANCE_TOLERANCE * size;
+        DriveResponse { acceleration: if is_held { 0.0 } else { rest / push.inertia }, has_friction }
     }
 }

@@ -13,12 +13,12 @@ use anyhow::Result;
 use palpate::{Flags, Sample};
 use rayon::prelude::*;
 
-use super::bench::Contact;
-use super::better::{JUMPS, STIFFNESS};
+use super::comparison::{JUMPS, STIFFNESS};
 use super::estimator::{Estimator, PAPER_COVARIANCE, PAPER_GAMMA, Running};
-use super::measure::Spread;
+use super::measure::MeanAndDeviation;
+use super::paper_contact::PaperContact;
 use crate::rig::Rig;
-use crate::simulate::{self, Pilot, Seen};
+use crate::simulate::{self, CommandSource, Measurement};
 
 /// Runs of each.
 pub const SEEDS: u64 = 5;
@@ -41,7 +41,7 @@ const PERIOD: usize = 100;
 
 /// Where K comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Source {
+pub enum StiffnessSource {
     /// An estimator, behind the matched filter or the paper's velocity.
     Estimated(Estimator, bool),
     /// What it was at first, for ever.
@@ -50,7 +50,7 @@ pub enum Source {
     Known,
 }
 
-impl Source {
+impl StiffnessSource {
     /// In the order of the page.
     pub fn all() -> [Self; 8] {
         [
@@ -89,19 +89,19 @@ pub struct Flight {
 
 /// How one source did, mean and spread over the runs.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub struct ForceControlResult {
     /// Which.
-    pub source: Source,
+    pub source: StiffnessSource,
     /// Milliseconds from the jump up until the force stays within 5 %.
-    pub settled_up: Spread,
+    pub settled_up: MeanAndDeviation,
     /// The same from the jump down.
-    pub settled_down: Spread,
+    pub settled_down: MeanAndDeviation,
     /// Largest departure after the jump up, % of the wanted force.
-    pub peak_up: Spread,
+    pub peak_up: MeanAndDeviation,
     /// The same after the jump down.
-    pub peak_down: Spread,
+    pub peak_down: MeanAndDeviation,
     /// Root mean square of the departure from the first jump to the end, %.
-    pub rms: Spread,
+    pub rms: MeanAndDeviation,
     /// Runs whose force still departs by more than twice the band in the last second before the second jump: they swing.
     pub unstable: usize,
     /// The first run.
@@ -109,7 +109,7 @@ pub struct Row {
 }
 
 struct Adaptive {
-    source: Source,
+    source: StiffnessSource,
     running: Option<Running>,
     gain: f64,
     believed: f64,
@@ -120,24 +120,24 @@ struct Adaptive {
 }
 
 impl Adaptive {
-    fn new(source: Source, gain: f64) -> Result<Self> {
+    fn new(source: StiffnessSource, gain: f64) -> Result<Self> {
         let running = match source {
-            Source::Estimated(estimator, is_matched) => {
-                Some(Running::new(estimator, super::better::front_end(is_matched))?)
+            StiffnessSource::Estimated(estimator, is_matched) => {
+                Some(Running::new(estimator, super::comparison::front_end(is_matched))?)
             }
             _ => None,
         };
-        let believed = if source == Source::Fixed { STIFFNESS[0] } else { CAUTIOUS };
+        let believed = if source == StiffnessSource::Fixed { STIFFNESS[0] } else { CAUTIOUS };
         let log = Vec::new();
         Ok(Self { source, running, gain, believed, depth: -2e-3, integral: 0.0, touched: false, log })
     }
 
-    fn believe(&mut self, seen: &Seen) {
-        if self.source == Source::Known {
-            let part = JUMPS.iter().filter(|jump| seen.time >= **jump as f64 * 1e-3).count();
+    fn update_estimate(&mut self, measurement: &Measurement) {
+        if self.source == StiffnessSource::Known {
+            let part = JUMPS.iter().filter(|jump| measurement.time >= **jump as f64 * 1e-3).count();
             self.believed = STIFFNESS[part];
         }
-        let sample = Sample { position: seen.position as f32, force: seen.force as f32, elapsed: 1e-3 };
+        let sample = Sample { position: measurement.position as f32, force: measurement.force as f32, elapsed: 1e-3 };
         // A sample that is rejected leaves what was believed.
         if let Some(Ok(estimate)) = self.running.as_mut().map(|running| running.update(sample)) {
             let doubtful = Flags::NO_CONTACT | Flags::STIFFNESS_UNCERTAIN | Flags::TOO_FEW | Flags::HELD;
@@ -148,27 +148,27 @@ impl Adaptive {
     }
 }
 
-impl Pilot for Adaptive {
-    fn command(&mut self, seen: &Seen) -> f64 {
-        self.believe(seen);
-        self.log.push((seen.time, seen.true_force, self.believed));
-        let dither = DITHER.0 * (std::f64::consts::TAU * DITHER.1 * seen.time).sin();
+impl CommandSource for Adaptive {
+    fn command(&mut self, measurement: &Measurement) -> f64 {
+        self.update_estimate(measurement);
+        self.log.push((measurement.time, measurement.true_force, self.believed));
+        let dither = DITHER.0 * (std::f64::consts::TAU * DITHER.1 * measurement.time).sin();
         if !self.touched {
-            self.touched = seen.force > 0.5 * WANTED;
+            self.touched = measurement.force > 0.5 * WANTED;
             self.depth += APPROACH * 1e-3;
             let worth = self.gain * self.believed / (self.gain + self.believed);
             self.integral = self.depth - WANTED / worth;
             return self.depth + dither;
         }
         let worth = self.gain * self.believed / (self.gain + self.believed);
-        self.integral += 1e-3 * BANDWIDTH * (WANTED - seen.force) / worth;
+        self.integral += 1e-3 * BANDWIDTH * (WANTED - measurement.force) / worth;
         WANTED / worth + self.integral + dither
     }
 }
 
 /// The rig of the steps under force control: the tool is steered, so the reference says only where it starts.
 fn rig() -> Result<Rig> {
-    let mut rig = Contact::Steps.rig()?;
+    let mut rig = PaperContact::Steps.rig()?;
     if let Some(reference) = &mut rig.reference {
         (reference.free_depth, reference.sine_amplitude) = (-2e-3, 0.0);
     }
@@ -179,10 +179,10 @@ fn rig() -> Result<Rig> {
 ///
 /// # Errors
 /// None for the rig file of this repository.
-pub fn study(done: &(dyn Fn() + Sync)) -> Result<Vec<Row>> {
+pub fn study(done: &(dyn Fn() + Sync)) -> Result<Vec<ForceControlResult>> {
     let rig = rig()?;
     let gain = rig.control.map_or(775.0, |control| control.proportional);
-    Source::all()
+    StiffnessSource::all()
         .into_par_iter()
         .map(|source| {
             let flights: Vec<Flight> = (1..=SEEDS).map(|seed| fly(&rig, gain, source, seed)).collect::<Result<_>>()?;
@@ -192,13 +192,13 @@ pub fn study(done: &(dyn Fn() + Sync)) -> Result<Vec<Row>> {
         .collect()
 }
 
-fn fly(rig: &Rig, gain: f64, source: Source, seed: u64) -> Result<Flight> {
-    let mut pilot = Adaptive::new(source, gain)?;
-    simulate::steer(rig, seed, &rig.name, &mut pilot)?;
+fn fly(rig: &Rig, gain: f64, source: StiffnessSource, seed: u64) -> Result<Flight> {
+    let mut controller = Adaptive::new(source, gain)?;
+    simulate::simulate_commanded(rig, seed, &rig.name, &mut controller)?;
     let mut flight = Flight::default();
     let mut sum = 0.0;
-    for (k, (time, force, believed)) in pilot.log.iter().enumerate() {
-        sum += force - k.checked_sub(PERIOD).map_or(0.0, |past| pilot.log[past].1);
+    for (k, (time, force, believed)) in controller.log.iter().enumerate() {
+        sum += force - k.checked_sub(PERIOD).map_or(0.0, |past| controller.log[past].1);
         flight.time.push(*time);
         flight.force.push(sum / (k + 1).min(PERIOD) as f64);
         flight.stiffness.push(*believed);
@@ -206,13 +206,13 @@ fn fly(rig: &Rig, gain: f64, source: Source, seed: u64) -> Result<Flight> {
     Ok(flight)
 }
 
-fn row(source: Source, mut flights: Vec<Flight>) -> Row {
+fn row(source: StiffnessSource, mut flights: Vec<Flight>) -> ForceControlResult {
     let departures = |flight: &Flight, rows: std::ops::Range<usize>| -> Vec<f64> {
         let end = rows.end.min(flight.force.len());
         flight.force[rows.start.min(end)..end].iter().map(|force| (force / WANTED - 1.0).abs()).collect()
     };
     let [up, down] = JUMPS;
-    let over = |measure: &dyn Fn(&Flight) -> f64| Spread::of(flights.iter().map(measure));
+    let over = |measure: &dyn Fn(&Flight) -> f64| MeanAndDeviation::of(flights.iter().map(measure));
     let settled = |rows: std::ops::Range<usize>| {
         over(&|flight| {
             let last = departures(flight, rows.clone()).iter().rposition(|d| d.is_nan() || *d > BAND);
@@ -232,5 +232,14 @@ fn row(source: Source, mut flights: Vec<Flight>) -> Row {
     });
     let (settled_up, settled_down) = (settled(up..down), settled(down..end));
     let (peak_up, peak_down) = (peak(up..down), peak(down..end));
-    Row { source, settled_up, settled_down, peak_up, peak_down, rms, unstable, flight: flights.swap_remove(0) }
+    ForceControlResult {
+        source,
+        settled_up,
+        settled_down,
+        peak_up,
+        peak_down,
+        rms,
+        unstable,
+        flight: flights.swap_remove(0),
+    }
 }
