@@ -158,7 +158,7 @@ fn the_cubic_is_that_of_numpy() {
     let mut errors = Ledger::default();
     for record in &table.records {
         let &[p, q, root] = record.as_slice() else { panic!("three columns") };
-        let got = palpate::cubic::depressed_root(p as f32, q as f32).expect("a root");
+        let got = palpate::math::cubic::depressed_root(p as f32, q as f32).expect("a root");
         // The companion matrix is known to a few roundings of its norm, its root no better.
         let companion = 4e-15 * (1.0 + 3.0 * p.abs() + q.abs());
         errors.compare("root", got.into(), root, root.abs(), 8.0 * f64::from(f32::EPSILON) * root.abs() + companion);

@@ -1,7 +1,6 @@
 //! The library on a host, against other algorithms, other libraries, real recordings and bad weather.
 
 mod degenerate;
-mod drive;
 mod fourth;
 mod golden;
 mod intervals;

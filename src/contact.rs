@@ -4,10 +4,12 @@
 //! rate `v` is positive while the tool moves inward, and the force `F` is positive when the tool pushes. All SI: metre,
 //! metre a second, newton; or, for a rotary joint, radian, radian a second, newton metre.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// One reading of the sensors.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Sample {
     /// Tool position along the contact normal, positive into the environment [m or rad].
     pub position: f32,
@@ -41,7 +43,8 @@ impl Observation {
 }
 
 /// What is estimated. Also any pair that has one entry for each of the two.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Impedance {
     /// K [N/m or N m/rad].
     pub stiffness: f32,

@@ -20,16 +20,16 @@ impl fmt::Display for ConfigError {
 impl core::error::Error for ConfigError {}
 
 /// `Err` unless `holds`; a NaN setting makes every comparison false and so is refused too.
-pub(crate) fn require(holds: bool, parameter: &'static str, expected: &'static str) -> Result<(), ConfigError> {
+pub fn require(holds: bool, parameter: &'static str, expected: &'static str) -> Result<(), ConfigError> {
     if holds { Ok(()) } else { Err(ConfigError { parameter, expected }) }
 }
 
 /// `Err` unless `value` is finite and above zero.
-pub(crate) fn require_positive(value: f32, parameter: &'static str) -> Result<(), ConfigError> {
+pub fn require_positive(value: f32, parameter: &'static str) -> Result<(), ConfigError> {
     require(value.is_finite() && value > 0.0, parameter, "a finite number above zero")
 }
 
 /// `Err` unless `value` is finite and not below zero.
-pub(crate) fn require_not_negative(value: f32, parameter: &'static str) -> Result<(), ConfigError> {
+pub fn require_not_negative(value: f32, parameter: &'static str) -> Result<(), ConfigError> {
     require(value.is_finite() && value >= 0.0, parameter, "a finite number, zero or above")
 }

@@ -1,12 +1,12 @@
 //! The whole way from sensor readings to an estimate, for one law.
 
 use crate::contact::Sample;
-use crate::cusum_rls::{CusumRls, CusumRlsConfig};
 use crate::error::{ConfigError, require};
-use crate::estimate::Estimate;
 use crate::front_end::Rejection;
-use crate::law::Law;
+use crate::quality::Estimate;
+use crate::recursive::{CusumRls, CusumRlsConfig};
 use crate::stream::{Stream, StreamConfig, Tracker};
+use crate::update_law::Law;
 
 /// Front end, ring of `N` observations, one law.
 ///

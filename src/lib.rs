@@ -42,102 +42,56 @@
 //! | [`Estimate`], [`Flags`] | the answer and its quality |
 //! | [`Identifier`] | all of it for one law |
 //! | [`Bench`] | all laws side by side |
-//! | [`drive`] | sensors, faults, calibration and link of a real drive |
+//!
+//! Sensors, faults, calibration and link of a drive are in the crate `palpate-drive`.
 //!
 //! Equation numbers are those of the paper that compared the laws on a one-degree-of-freedom bench.
 
 #![no_std]
 #![forbid(unsafe_code)]
 
-mod adaptive_window;
-mod bench;
-mod block;
-mod block_lmf;
-mod block_lms;
-mod block_ls;
-mod change;
-mod confidence;
+pub mod block;
+mod change_detector;
 mod contact;
-mod contact_model;
-mod covariance;
-pub mod cubic;
-mod cusum_rls;
-pub mod direct;
-mod direct_lmf;
-mod directional_rls;
-pub mod drive;
-mod error;
-mod estimate;
-mod ewrls;
-pub mod exchange;
-mod filter;
-mod flags;
-mod fourth;
-mod front_end;
-mod gate;
-mod gradient;
+pub mod error;
+mod estimator_bank;
+pub mod front_end;
 mod identifier;
-mod law;
 pub mod math;
-mod memory;
-mod model_stream;
-mod parameter_rls;
 mod prior;
-mod propagation;
-mod queue;
-mod recursive;
-mod reset_rls;
-mod running;
-mod sprls;
-mod step;
+pub mod quality;
+pub mod recursive;
 mod stream;
-mod sums;
-mod sym2;
-mod units;
+mod update_law;
 mod window;
 
-pub use adaptive_window::{AdaptiveWindow, AdaptiveWindowConfig, AdaptiveWindowState};
-pub use bench::{BENCH_WINDOW, Bench, BenchConfig, BenchEstimates, Method, Methods};
-pub use block::{BlockConfig, BlockLaw, BlockState};
-pub use block_lmf::{BlockLeastMeanFourth, Direction};
-pub use block_lms::BlockLeastMeanSquare;
-pub use block_ls::BlockLeastSquares;
-pub use change::{ChangeConfig, ChangeState};
-pub use confidence::Confidence;
+pub use block::direct;
+pub use block::{
+    AdaptiveWindow, AdaptiveWindowConfig, AdaptiveWindowState, BlockConfig, BlockLaw, BlockLeastMeanFourth,
+    BlockLeastMeanSquare, BlockLeastSquares, BlockState, Direction,
+};
+pub use change_detector::{ChangeConfig, ChangeState};
 pub use contact::{Impedance, Observation, Sample};
-pub use contact_model::{ContactModel, MOST_PARAMETERS, contact_plane};
-pub use covariance::Covariance;
-pub use cusum_rls::{CusumRls, CusumRlsConfig, CusumRlsState};
-pub use directional_rls::{DirectionalRls, DirectionalRlsConfig, DirectionalRlsState};
 pub use error::ConfigError;
-pub use estimate::{Assessor, Estimate, Sensors};
-pub use ewrls::{Ewrls, EwrlsConfig};
-pub use filter::{LowPass, LowPassState};
-pub use flags::Flags;
-pub use front_end::{Field, FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection, Velocity};
-pub use gate::{GateConfig, GateState};
-pub use gradient::{Gradient, GradientConfig, GradientState};
+pub use estimator_bank::{BENCH_WINDOW, Bench, BenchConfig, BenchEstimates, BenchParts, Method, Methods};
+pub use front_end::{
+    ContactModel, Field, FrontEnd, FrontEndConfig, FrontEndState, GateConfig, GateState, LowPass, LowPassState,
+    MOST_PARAMETERS, ModelStream, Reading, Rejection, Row, Units, Velocity, contact_plane,
+};
 pub use identifier::Identifier;
-pub use law::Law;
-pub use model_stream::{ModelStream, Row};
-pub use parameter_rls::{ParameterRls, ParameterRlsConfig, ParameterState, ParameterStep};
+pub use math::sym2::Sym2;
 pub use prior::Prior;
-pub use propagation::Propagation;
-pub use recursive::RecursiveState;
-pub use reset_rls::{ResetRls, ResetRlsConfig, ResetRlsState};
-pub use sprls::{Sprls, SprlsConfig, SprlsState};
-pub use step::Step;
+pub use quality::{Assessor, Confidence, Estimate, Flags, Propagation, Sensors, Step};
+pub use recursive::{
+    Covariance, CusumRls, CusumRlsConfig, CusumRlsState, DirectionalRls, DirectionalRlsConfig, DirectionalRlsState,
+    Ewrls, EwrlsConfig, Gradient, GradientConfig, GradientState, ParameterRls, ParameterRlsConfig, ParameterState,
+    ParameterStep, RecursiveState, ResetRls, ResetRlsConfig, ResetRlsState, Sprls, SprlsConfig, SprlsState,
+};
 pub use stream::{ContactLoss, Event, Stream, StreamConfig, Tracker};
-pub use sym2::Sym2;
-pub use units::Units;
+pub use update_law::Law;
 pub use window::{Recent, Window};
 
 /// The README's example is a test, too.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
-
-/// So is that of the drive's page.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/drive.md")]
-struct DrivePage;

@@ -14,6 +14,9 @@
 //! So `libm` serves for the square root, neither for the others, and `micromath` nowhere: its errors are visible in the
 //! estimate, where a cubic is to keep seven digits.
 
+pub mod cubic;
+pub mod sym2;
+
 /// The larger of two; `b` where they do not compare. `f32::max` is a call into the runtime library on a Cortex-M4F, which
 /// has no such instruction; this is a comparison and a select.
 pub fn larger(a: f32, b: f32) -> f32 {

@@ -2,13 +2,15 @@
 
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_positive};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// K and B are zero, give or take a spread: a ridge in the sums, or the first covariance of a recursion.
 ///
 /// It takes the place of a minimum fill: while the samples say less than the prior the estimate stays small, and a few of
 /// them outweigh it. On the bench it is worth 1e-8 m^2 of `sum x^2`, one sample 0.1 mm deep.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Prior {
     /// Standard deviation of the force that one sample is trusted for, internal units (N on the bench).
     pub noise: f32,

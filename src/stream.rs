@@ -2,16 +2,18 @@
 
 use crate::contact::Sample;
 use crate::error::ConfigError;
-use crate::estimate::{Assessor, Estimate, Sensors};
-use crate::flags::Flags;
 use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection};
-use crate::law::Law;
 use crate::math::{larger, smaller};
+use crate::quality::Flags;
+use crate::quality::{Assessor, Estimate, Sensors};
+use crate::update_law::Law;
 use crate::window::{Recent, Window};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// What a loss of contact makes forgotten.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub enum ContactLoss {
     /// Estimate, covariance and window: each contact begins as the first did.
     #[default]
@@ -23,7 +25,8 @@ pub enum ContactLoss {
 }
 
 /// Settings of a [`Stream`].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct StreamConfig {
     /// Position, velocity, contact.
     pub front_end: FrontEndConfig,

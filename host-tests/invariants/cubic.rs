@@ -3,7 +3,7 @@
 use super::runner;
 use crate::reference::{self, Row, Theta};
 use crate::tolerance::close;
-use palpate::cubic::depressed_root;
+use palpate::math::cubic::depressed_root;
 use palpate::{BlockConfig, Direction, Impedance, Observation, Recent, direct};
 use proptest::collection::vec;
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, Result};
 use clap::Args;
-use palpate::drive::{CALIBRATION_BYTES, Calibration};
+use palpate_drive::{CALIBRATION_BYTES, Calibration};
 
 use crate::error::InputError;
 use crate::outfile::OutFile;

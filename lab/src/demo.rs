@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
 use palpate::Method;
-use palpate::exchange::estimate_words;
+use palpate_drive::replay_format::estimate_words;
 
 use crate::device::{Device, project};
 use crate::diagnose::{self, DiagnoseArgs};

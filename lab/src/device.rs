@@ -7,11 +7,11 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
-use palpate::exchange::{
+use palpate::{BenchConfig, Sample};
+use palpate_drive::replay_format::{
     CONFIG_BYTES, COUNTER_BYTES, Counters, Outcome, decode_counters, decode_record, encode_config, encode_sample,
     record_bytes,
 };
-use palpate::{BenchConfig, Sample};
 
 use crate::tools::{self, Leave};
 
@@ -30,7 +30,7 @@ impl Device {
     /// # Errors
     /// A tool is missing (as [`tools::MissingTools`]), the sources are not there, or the build fails.
     pub fn prepare(leave: Leave) -> Result<Self> {
-        Ok(Self { qemu: tools::for_the_device(leave)?, image: build("palpate", "replay")? })
+        Ok(Self { qemu: tools::for_the_device(leave)?, image: build("palpate-firmware", "--bin", "replay")? })
     }
 
     /// Feeds `samples` to the image and hands each outcome to `take`, in order; `progress` is told meanwhile how many are
@@ -130,9 +130,9 @@ pub fn project() -> Result<PathBuf> {
     found.context("the device's image is built from source: run this inside the project's folder")
 }
 
-/// Builds an image, an example of `package`, by its name and finds the file that cargo made.
-pub(crate) fn build(package: &str, name: &str) -> Result<PathBuf> {
-    let target = ["--profile", "device", "--package", package, "--example", name, "--target", tools::TARGET];
+/// Builds an image of `package` and finds the file that cargo made. `kind` is `--bin` or `--example`.
+pub(crate) fn build(package: &str, kind: &str, name: &str) -> Result<PathBuf> {
+    let target = ["--profile", "device", "--package", package, kind, name, "--target", tools::TARGET];
     cargo(&target, name, |message| message["executable"].as_str().map(PathBuf::from))
 }
 

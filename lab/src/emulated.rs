@@ -42,7 +42,7 @@ impl DriveImage {
     /// # Errors
     /// A tool is missing (as [`tools::MissingTools`]), or the build fails.
     pub fn prepare(leave: Leave) -> Result<Self> {
-        Ok(Self { qemu: tools::for_the_device(leave)?, path: device::build("palpate", "drive")? })
+        Ok(Self { qemu: tools::for_the_device(leave)?, path: device::build("palpate-firmware", "--bin", "drive")? })
     }
 
     /// Starts the drive, with `calibration` in its flash where there is one, and `arguments` more for QEMU.

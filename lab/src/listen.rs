@@ -14,9 +14,9 @@ use std::time::{Duration, Instant};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use palpate::drive::link::{BAUD, Command, Message, Outcome, Source, Streams};
-use palpate::drive::{Calibration, Order, Scale, Settings};
 use palpate::{BENCH_WINDOW, Method};
+use palpate_drive::link::{BAUD, Command, Message, Outcome, Source, Streams};
+use palpate_drive::{Calibration, Order, Scale, Settings};
 
 pub use client::Client;
 pub use feed::inputs;
@@ -206,7 +206,7 @@ impl Session {
     fn listen(
         &mut self,
         client: &mut Client,
-        inputs: Vec<palpate::drive::Input>,
+        inputs: Vec<palpate_drive::Input>,
         until: Option<Instant>,
         stop: &AtomicBool,
     ) -> Result<()> {
@@ -261,7 +261,7 @@ pub struct About {
     /// Bits 24 to 31 of RCC_CSR at its start.
     pub reset: u8,
     /// What was found wrong at its start.
-    pub found: palpate::drive::Faults,
+    pub found: palpate_drive::Faults,
     /// Its calibration.
     pub calibration: Calibration,
     /// Its scale at present.

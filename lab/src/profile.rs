@@ -69,16 +69,16 @@ impl Profile {
     /// # Errors
     /// A tool is missing, the image fails, or the two counts disagree.
     pub fn take(leave: Leave) -> Result<Self> {
-        Self::of(leave, "palpate", "profile")
+        Self::of(leave, "palpate-firmware", "--bin", "profile")
     }
 
-    /// The same of another image that measures by the same gauge: an example of `package`.
+    /// The same of another image that measures by the same gauge: the one `name` of `package`, `kind` being `--bin` or `--example`.
     ///
     /// # Errors
     /// As [`Self::take`].
-    pub fn of(leave: Leave, package: &str, example: &str) -> Result<Self> {
+    pub fn of(leave: Leave, package: &str, kind: &str, name: &str) -> Result<Self> {
         let emulator = emulator::Emulator::prepare(tools::for_profiling(leave)?)?;
-        let image = Image::read(&device::build(package, example)?)?;
+        let image = Image::read(&device::build(package, kind, name)?)?;
         let cases = counts::combine(&emulator.with_plugin(&image)?, &emulator.with_clock(&image)?)?;
         let figures = figures::of(&image, &cases, &trial::updates(&trial::samples()?)?)?;
         Ok(Self { image, cases, figures })
@@ -146,7 +146,7 @@ pub fn stack_from(image: &Path, entry: &str) -> Result<u32> {
 /// # Errors
 /// It does not build.
 pub fn interrupt_image() -> Result<PathBuf> {
-    device::build("palpate", "replay")
+    device::build("palpate-firmware", "--bin", "replay")
 }
 
 /// The image of a drive, built.
@@ -154,7 +154,7 @@ pub fn interrupt_image() -> Result<PathBuf> {
 /// # Errors
 /// It does not build.
 pub fn drive_image() -> Result<PathBuf> {
-    device::build("palpate", "drive")
+    device::build("palpate-firmware", "--bin", "drive")
 }
 
 /// Runs `palpate profile`.

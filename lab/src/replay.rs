@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use palpate::exchange::Outcome;
 use palpate::{Bench, BenchConfig, Sample};
+use palpate_drive::replay_format::Outcome;
 
 use crate::device::Device;
 use crate::error::InputError;

@@ -5,11 +5,11 @@
 
 use std::path::Path;
 
-use palpate::exchange::{Counters, Outcome, estimate_words};
 use palpate::{
     Bench, BenchConfig, BlockConfig, ContactLoss, Field, FrontEndConfig, Method, Rejection, Sample, StreamConfig,
     Velocity,
 };
+use palpate_drive::replay_format::{Counters, Outcome, estimate_words};
 use palpate_lab::device::{Device, project};
 use palpate_lab::recording::Recording;
 use palpate_lab::recordings_folder;

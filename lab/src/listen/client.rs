@@ -4,10 +4,10 @@ use std::io::ErrorKind;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
-use palpate::drive::Faults;
-use palpate::drive::framing::{LINE_BYTES, Receiver, Tally, encode};
-use palpate::drive::link::{Command, Count, FEED, Message, Outcome, Request, Streams};
-use palpate::drive::{INPUT_BYTES, Input};
+use palpate_drive::Faults;
+use palpate_drive::framing::{LINE_BYTES, Receiver, Tally, encode};
+use palpate_drive::link::{Command, Count, FEED, Message, Outcome, Request, Streams};
+use palpate_drive::{INPUT_BYTES, Input};
 
 use super::port::Port;
 use super::{About, in_words};

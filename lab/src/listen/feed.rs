@@ -1,6 +1,6 @@
 //! From a recording to the words that the sensors of a drive would send.
 
-use palpate::drive::{Calibration, Input, Notes, PositionSensor, Scale, ads8681, as5047p};
+use palpate_drive::{Calibration, Input, Notes, PositionSensor, Scale, ads8681, as5047p};
 
 use crate::recording::Recording;
 use crate::rig::Rig;

@@ -3,8 +3,8 @@
 use std::io::Write as _;
 
 use anyhow::{Context as _, Result, ensure};
-use palpate::drive::link::Seen;
-use palpate::drive::{Calibration, Settings, TICK_HZ};
+use palpate_drive::link::Seen;
+use palpate_drive::{Calibration, Settings, TICK_HZ};
 
 use crate::outfile::OutFile;
 use crate::recording::Recording;

@@ -5,8 +5,8 @@ use std::io::IsTerminal as _;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::Flags;
-use palpate::drive::link::{Count, Told};
-use palpate::drive::{Calibration, Faults, Standing, TICK_HZ};
+use palpate_drive::link::{Count, Told};
+use palpate_drive::{Calibration, Faults, Standing, TICK_HZ};
 
 use super::About;
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, ensure};
-use palpate::exchange::{CONFIG_BYTES, encode_config, encode_sample};
+use palpate_drive::replay_format::{CONFIG_BYTES, encode_config, encode_sample};
 
 use super::cycles::cost;
 use super::image::Image;

@@ -66,7 +66,7 @@ impl Figures {
 
 /// Where the code of a case begins.
 pub fn entry(image: &Image, case: &Case) -> Option<u32> {
-    let called = |at: &u32| image.function_at(*at).filter(|function| function.name.contains("gauge::call"));
+    let called = |at: &u32| image.function_at(*at).filter(|function| function.name.contains("measurement::call"));
     case.times.keys().find_map(|at| called(at).map(|function| function.start))
 }
 

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, ensure};
 use palpate::Method;
-use palpate::drive::link::{Command, Message, Source, Streams};
-use palpate::drive::{Calibration, Input, Settings};
+use palpate_drive::link::{Command, Message, Source, Streams};
+use palpate_drive::{Calibration, Input, Settings};
 
 use super::counts::read_plugin;
 use super::emulator::{counter, table};

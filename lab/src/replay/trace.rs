@@ -1,7 +1,7 @@
 //! What the estimators returned, method by method.
 
-use palpate::exchange::Outcome;
 use palpate::{Estimate, Flags, Method, Rejection, Sample};
+use palpate_drive::replay_format::Outcome;
 
 use super::plan::Plan;
 use crate::page;

@@ -2,7 +2,7 @@
 
 use std::process::{Command, Stdio};
 
-use palpate::drive::Calibration;
+use palpate_drive::Calibration;
 use palpate_lab::emulated::Pace;
 
 use super::rig::{bench, image};

@@ -1,8 +1,8 @@
 //! What the image does where things are missing or damaged.
 
 use palpate::Method;
-use palpate::drive::link::{Command, Message, Outcome, Source, Streams};
-use palpate::drive::{CALIBRATION_BYTES, Calibration, Faults, Input, Order, Settings, Standing};
+use palpate_drive::link::{Command, Message, Outcome, Source, Streams};
+use palpate_drive::{CALIBRATION_BYTES, Calibration, Faults, Input, Order, Settings, Standing};
 
 use super::rig::{drive, image, words};
 
@@ -44,7 +44,7 @@ fn without_sensors_it_comes_up_tells_of_them_and_keeps_its_kilohertz() {
     assert!(drive.runs().expect("a process"));
 }
 
-fn as_told(message: &Message<'_>) -> palpate::drive::link::Told {
+fn as_told(message: &Message<'_>) -> palpate_drive::link::Told {
     match message {
         Message::Estimate(told) => *told,
         other => panic!("{other:?}"),
@@ -140,7 +140,7 @@ fn a_tare_and_a_silent_host_are_seen_by_the_drive() {
         .enumerate()
         .map(|(k, word)| {
             let code = 0x8000 + 700 + (k % 3) as u16;
-            Input { force: palpate::drive::ads8681::word(code, Calibration::DEFAULT.range), ..*word }
+            Input { force: palpate_drive::ads8681::word(code, Calibration::DEFAULT.range), ..*word }
         })
         .collect();
     let heard = super::rig::feed(&mut client, &offset);

@@ -1,10 +1,10 @@
 //! Hardware in the loop: the sensors' words over the link, and the host's bits back.
 
 use palpate::Method;
-use palpate::drive::framing::Tally;
-use palpate::drive::link::{Command, Source, Told};
-use palpate::drive::{Calibration, Faults, Input, Notes, Settings, Standing, as5047p};
-use palpate::exchange::estimate_words;
+use palpate_drive::framing::Tally;
+use palpate_drive::link::{Command, Source, Told};
+use palpate_drive::replay_format::estimate_words;
+use palpate_drive::{Calibration, Faults, Input, Notes, Settings, Standing, as5047p};
 use palpate_lab::listen::Taken;
 use palpate_lab::replay::{Options, Runner, replay};
 use palpate_lab::rig::Rig;

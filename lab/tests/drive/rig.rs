@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use palpate::drive::link::{Command, Message, Seen, Source, Streams, Told};
-use palpate::drive::{Bounds, Calibration, Counters, Cycle, Estimator, Faults, Input, Notes, Settings};
+use palpate_drive::link::{Command, Message, Seen, Source, Streams, Told};
+use palpate_drive::{Bounds, Calibration, Counters, Cycle, Estimator, Faults, Input, Notes, Settings};
 use palpate_lab::device::project;
 use palpate_lab::emulated::{DriveImage, Emulated, Pace};
 use palpate_lab::listen::{Client, inputs};

@@ -119,16 +119,21 @@ fn checks(rustfmt: bool, clippy: bool, target: bool, device: bool) -> Vec<Check>
             "--package",
             "palpate",
             "--package",
-            "palpate-rivals",
+            "palpate-drive",
+            "--package",
+            "palpate-firmware",
             "--lib",
-            "--examples",
+            "--bins",
             "--target",
             TARGET,
             "--",
             "-D",
             "warnings",
         ];
-        checks.push(check("lints of the image", &image));
+        checks.push(check("lints of the images", &image));
+        let baselines =
+            ["clippy", "--release", "--package", "palpate-baselines", "--lib", "--examples", "--target", TARGET];
+        checks.push(check("lints of the baselines' image", &[&baselines[..], &["--", "-D", "warnings"]].concat()));
     }
     let documentation =
         check("documentation", &["doc", "--release", "--workspace", "--no-deps", "--document-private-items"]);

@@ -1,0 +1,28 @@
+//! The table of `palpate` beside its rivals: `cargo run --release -p palpate-baselines`; with `--readme` its rows of the README are
+//! written there.
+
+#[cfg(not(target_os = "none"))]
+mod accuracy;
+#[cfg(not(target_os = "none"))]
+mod table;
+
+#[cfg(not(target_os = "none"))]
+fn main() -> std::process::ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let done = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => table::print(),
+        ["--readme"] => table::write(),
+        _ => Err(anyhow::anyhow!("nothing, or --readme")),
+    };
+    match done {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("rivals: {error:#}");
+            std::process::ExitCode::FAILURE
+        }
+    }
+}
+
+/// The table is made on the host.
+#[cfg(target_os = "none")]
+fn main() {}

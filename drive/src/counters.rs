@@ -1,0 +1,65 @@
+//! How often what happened: written by the interrupt alone, read by whoever wants.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use crate::faults::Faults;
+
+/// Counters. The interrupt is their only writer, so a load and a store are as good as a read-modify-write, and nobody waits.
+#[derive(Debug, Default)]
+pub struct Counters {
+    faults: [AtomicU32; Faults::COUNT],
+    ticks: AtomicU32,
+    used: AtomicU32,
+    restarts: AtomicU32,
+    refused_tares: AtomicU32,
+}
+
+fn count(counter: &AtomicU32) {
+    counter.store(counter.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+}
+
+impl Counters {
+    /// All zero.
+    pub const fn new() -> Self {
+        Self {
+            faults: [const { AtomicU32::new(0) }; Faults::COUNT],
+            ticks: AtomicU32::new(0),
+            used: AtomicU32::new(0),
+            restarts: AtomicU32::new(0),
+            refused_tares: AtomicU32::new(0),
+        }
+    }
+
+    pub(super) fn tick(&self, faults: Faults, used: bool) {
+        count(&self.ticks);
+        if used {
+            count(&self.used);
+        }
+        if faults.is_empty() {
+            return;
+        }
+        for (bit, counter) in self.faults.iter().enumerate() {
+            if faults.bits() >> bit & 1 != 0 {
+                count(counter);
+            }
+        }
+    }
+
+    pub(super) fn restart(&self) {
+        count(&self.restarts);
+    }
+
+    pub(super) fn refused_tare(&self) {
+        count(&self.refused_tares);
+    }
+
+    /// Ticks at which each fault occurred, in the order of their bits.
+    pub fn faults(&self) -> [u32; Faults::COUNT] {
+        core::array::from_fn(|bit| self.faults.get(bit).map_or(0, |counter| counter.load(Ordering::Relaxed)))
+    }
+
+    /// Ticks, samples used, times that the estimator began anew, tares that were refused.
+    pub fn others(&self) -> [u32; 4] {
+        [&self.ticks, &self.used, &self.restarts, &self.refused_tares].map(|counter| counter.load(Ordering::Relaxed))
+    }
+}

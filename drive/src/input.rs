@@ -1,0 +1,85 @@
+//! Everything that one tick sees.
+
+use serde::{Deserialize, Serialize};
+
+use crate::faults::Faults;
+
+bitflags::bitflags! {
+    /// What went with the words of a tick.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub struct Notes: u8 {
+        /// The encoder's bus did not answer.
+        const NO_POSITION = 1;
+        /// The converter's bus did not answer.
+        const NO_FORCE = 1 << 1;
+        /// There is no sample at all: nothing was read, or nothing was fed.
+        const NO_SAMPLE = 1 << 2;
+        /// The supply is below its threshold.
+        const BROWN_OUT = 1 << 3;
+        /// Nothing was heard on the link for its time-out.
+        const LINK_GONE = 1 << 4;
+        /// The tick before had not ended when this one was due.
+        const OVERRUN = 1 << 5;
+    }
+}
+
+/// Bytes of an [`Input`] on the link.
+pub const INPUT_BYTES: usize = 10;
+
+/// The words that the sensors' buses brought, and what else happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "[u8; INPUT_BYTES]", into = "[u8; INPUT_BYTES]")]
+pub struct Input {
+    /// The encoder's answer to ANGLECOM, or the count of the quadrature timer.
+    pub angle: u16,
+    /// The encoder's answer to DIAAGC.
+    pub diagnostics: u16,
+    /// The converter's word.
+    pub force: u32,
+    /// Ticks since the input before: 1, or more where ticks were lost.
+    pub elapsed: u8,
+    /// What else happened.
+    pub notes: Notes,
+}
+
+impl Input {
+    /// Nothing was read.
+    pub const NOTHING: Self = Self { angle: 0, diagnostics: 0, force: 0, elapsed: 1, notes: Notes::NO_SAMPLE };
+
+    /// The faults that its notes tell of.
+    pub fn told(&self) -> Faults {
+        let mut faults = Faults::empty();
+        for (note, fault) in [
+            (Notes::NO_POSITION, Faults::POSITION_TIMEOUT),
+            (Notes::NO_FORCE, Faults::FORCE_TIMEOUT),
+            (Notes::NO_SAMPLE, Faults::SAMPLE_LOST),
+            (Notes::BROWN_OUT, Faults::BROWN_OUT),
+            (Notes::LINK_GONE, Faults::LINK_GONE),
+            (Notes::OVERRUN, Faults::OVERRUN),
+        ] {
+            faults.set(fault, self.notes.contains(note));
+        }
+        if self.elapsed > 1 { faults | Faults::SAMPLE_LOST } else { faults }
+    }
+}
+
+impl From<[u8; INPUT_BYTES]> for Input {
+    fn from(bytes: [u8; INPUT_BYTES]) -> Self {
+        let [a0, a1, d0, d1, f0, f1, f2, f3, elapsed, notes] = bytes;
+        Self {
+            angle: u16::from_le_bytes([a0, a1]),
+            diagnostics: u16::from_le_bytes([d0, d1]),
+            force: u32::from_le_bytes([f0, f1, f2, f3]),
+            elapsed,
+            notes: Notes::from_bits_truncate(notes),
+        }
+    }
+}
+
+impl From<Input> for [u8; INPUT_BYTES] {
+    fn from(input: Input) -> Self {
+        let ([a0, a1], [d0, d1]) = (input.angle.to_le_bytes(), input.diagnostics.to_le_bytes());
+        let [f0, f1, f2, f3] = input.force.to_le_bytes();
+        [a0, a1, d0, d1, f0, f1, f2, f3, input.elapsed, input.notes.bits()]
+    }
+}

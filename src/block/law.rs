@@ -1,0 +1,155 @@
+//! What the block laws share: settings, state, and the outcome of an update.
+
+use crate::block::config::BlockConfig;
+use crate::block::second_order::Moments;
+use crate::block::solution::Solution;
+use crate::block::window_sums::{Local, Memory};
+use crate::contact::Impedance;
+use crate::quality::Confidence;
+use crate::quality::Flags;
+use crate::quality::Step;
+use crate::update_law::Law;
+use crate::window::Recent;
+
+/// State of a block law: the estimate, and what is remembered of the window beside its samples.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BlockState<M> {
+    /// K and B, internal units.
+    pub estimate: Impedance,
+    pub(crate) memory: M,
+}
+
+/// What a law makes of the window's sums.
+#[derive(Debug, Clone, Copy)]
+pub struct Move {
+    /// Where the estimate is to go.
+    pub to: Impedance,
+    /// Variance per sample of the law's own criterion.
+    pub noise_variance: f32,
+    /// What was out of the ordinary.
+    pub flags: Flags,
+}
+
+/// A window as a criterion sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct View<'a, M: Memory> {
+    pub config: &'a BlockConfig,
+    pub recent: Recent<'a>,
+    pub memory: &'a M,
+    pub estimate: Impedance,
+    pub samples: f32,
+    pub local: &'a Local<M::Local>,
+    /// What least squares would do, from the centre.
+    pub solution: Solution,
+}
+
+impl<'a, M: Memory> View<'a, M> {
+    #[inline(always)]
+    pub fn of(
+        config: &'a BlockConfig,
+        memory: &'a M,
+        recent: Recent<'a>,
+        estimate: Impedance,
+        local: &'a mut Local<M::Local>,
+    ) -> Self {
+        let samples = recent.len() as f32;
+        let mut solution = Solution::of(local.moments.second(), samples, config, local.centre);
+        if !solution.flags.is_empty() && local.centre != estimate {
+            // What is held is held where the estimate is.
+            local.moments = local.moments.shifted(estimate.moved(-1.0, local.centre));
+            local.centre = estimate;
+            solution = Solution::of(local.moments.second(), samples, config, estimate);
+        }
+        Self { config, recent, memory, estimate, samples, local, solution }
+    }
+
+    /// The least-squares solution of the window.
+    #[inline(always)]
+    pub fn least_squares(&self) -> Impedance {
+        self.local.centre.moved(1.0, self.solution.correction)
+    }
+}
+
+/// What one block law has of its own.
+pub trait Criterion {
+    /// What it remembers of the window.
+    type Memory: Memory;
+
+    /// The move from the estimate of `view`.
+    fn advance(&self, view: &View<'_, Self::Memory>) -> Move;
+}
+
+/// A law on a sliding window: what all of them share, about the criterion of each.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockLaw<C> {
+    pub(crate) config: BlockConfig,
+    pub(crate) criterion: C,
+}
+
+impl<C: Criterion> BlockLaw<C> {
+    /// Moves the estimate by the newest of `recent`, and nothing else: no interval, fill or excitation. The state is that of
+    /// [`Law::update`], and either may follow on the other. Returns the innovation, in internal units of force.
+    pub fn learn(&self, state: &mut BlockState<C::Memory>, recent: Recent<'_>) -> f32 {
+        let recent = recent.last(self.window());
+        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
+        state.memory.follow(&self.config, recent, state.estimate);
+        if recent.len() >= usize::from(self.config.minimum_fill) {
+            let mut local = state.memory.local(recent, state.estimate);
+            let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
+            let moved = self.criterion.advance(&view).to;
+            if moved.is_finite() {
+                state.estimate = moved;
+            }
+        }
+        innovation
+    }
+}
+
+impl<C: Criterion> Law for BlockLaw<C> {
+    type State = BlockState<C::Memory>;
+
+    fn start(&self) -> Self::State {
+        BlockState::default()
+    }
+
+    /// Whoever holds the window clears it; a window that still holds samples at the next update is summed anew once.
+    fn forget(&self, state: &mut Self::State) {
+        state.memory = C::Memory::default();
+    }
+
+    fn window(&self) -> usize {
+        usize::from(self.config.window)
+    }
+
+    fn update(&self, state: &mut Self::State, recent: Recent<'_>) -> Step {
+        let recent = recent.last(self.window());
+        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
+        let fill = recent.len() as f32 / f32::from(self.config.window);
+        state.memory.follow(&self.config, recent, state.estimate);
+        if recent.len() < usize::from(self.config.minimum_fill) {
+            let (confidence, excitation, flags) = (Confidence::NONE, 0.0, Flags::TOO_FEW);
+            return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
+        }
+        let mut local = state.memory.local(recent, state.estimate);
+        let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
+        let Move { to, noise_variance, flags } = self.criterion.advance(&view);
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
+        // Not at all where that would leave the finite numbers.
+        let estimate = if to.is_finite() { to } else { state.estimate };
+        state.estimate = estimate;
+        Step {
+            estimate,
+            innovation,
+            confidence: Confidence {
+                noise: solution.inverse.scaled(noise_variance),
+                noise_gain: solution.inverse,
+                remainder: view.least_squares().moved(-1.0, estimate),
+                offset_gain: solution.inverse.times(sums.regressor),
+                samples: view.samples,
+            },
+            fill,
+            excitation: sums.regressors.independence(),
+            flags,
+        }
+    }
+}

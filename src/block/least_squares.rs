@@ -1,0 +1,46 @@
+//! Block least squares (BLS) over a sliding window.
+
+use core::marker::PhantomData;
+
+use crate::block::config::BlockConfig;
+use crate::block::law::{BlockLaw, Criterion, Move, View};
+use crate::block::second_order::Moments;
+use crate::block::second_order::Sums;
+use crate::block::two_stack_aggregate::Queue;
+use crate::block::window_sums::Memory;
+use crate::error::ConfigError;
+
+/// `theta = (sum phi phi')^-1 sum phi F` over the window (eq. 5-6), by the closed 2x2 inverse.
+///
+/// The sums are taken about an earlier estimate and solved for its correction, which is the same solution with less
+/// rounding. Where penetration and rate are in line, or the tool holds still, K alone is solved for and B is held.
+///
+/// An update costs the same at any window.
+pub type BlockLeastSquares = BlockLaw<LeastSquares<Queue<Sums>>>;
+
+/// `sum (F - phi' theta)^2`, solved outright.
+#[derive(Debug, Clone, Copy)]
+pub struct LeastSquares<M>(PhantomData<M>);
+
+impl<M: Memory> BlockLaw<LeastSquares<M>> {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: BlockConfig) -> Result<Self, ConfigError> {
+        Ok(Self { config: config.check()?, criterion: LeastSquares(PhantomData) })
+    }
+}
+
+impl<M: Memory> Criterion for LeastSquares<M> {
+    type Memory = M;
+
+    fn advance(&self, view: &View<'_, M>) -> Move {
+        let (sums, solution) = (view.local.moments.second(), &view.solution);
+        Move {
+            to: view.least_squares(),
+            noise_variance: solution.residual_variance(sums, view.samples),
+            flags: solution.flags,
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The contact gate: is the tool in the surface?
+
+use crate::error::{ConfigError, require, require_not_negative};
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Serialize};
+
+/// Thresholds with hysteresis.
+///
+/// "Force is not zero" alone marks most of free space as contact, for a sensor is never silent: contact begins with a
+/// force above `on_force` at a penetration of at least zero, and ends after `off_samples` samples in a row that are
+/// below `off_force` or outside the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct GateConfig {
+    /// Force that begins a contact, about 2.5 standard deviations of the sensor's noise or more [N or N m].
+    pub on_force: f32,
+    /// Force below which a sample counts as away, at most `on_force` [N or N m].
+    pub off_force: f32,
+    /// Samples away in a row that end a contact, at least 1.
+    pub off_samples: u16,
+}
+
+/// The contact, and for how long it has been slipping away.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GateState {
+    closed: bool,
+    away: u16,
+}
+
+impl GateConfig {
+    /// For the paper's bench: 0.2 N on, 0.05 N off for 5 samples.
+    pub const BENCH: Self = Self { on_force: 0.2, off_force: 0.05, off_samples: 5 };
+
+    pub(crate) fn check(self) -> Result<(), ConfigError> {
+        require_not_negative(self.off_force, "gate.off_force")?;
+        require(
+            self.on_force.is_finite() && self.on_force >= self.off_force,
+            "gate.on_force",
+            "a finite force, at least gate.off_force",
+        )?;
+        require(self.off_samples > 0, "gate.off_samples", "at least 1")
+    }
+
+    /// Takes the penetration and force of one sample, in the unit of the thresholds; whether the tool is in contact.
+    pub fn update(self, state: &mut GateState, penetration: f32, force: f32) -> bool {
+        if state.closed {
+            let away = force < self.off_force || penetration < 0.0;
+            state.away = if away { state.away.saturating_add(1) } else { 0 };
+            state.closed = state.away < self.off_samples;
+        } else if force > self.on_force && penetration >= 0.0 {
+            *state = GateState { closed: true, away: 0 };
+        }
+        state.closed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_neither_begins_nor_ends_a_contact() {
+        let (gate, mut state) = (GateConfig::BENCH, GateState::default());
+        assert!(!gate.update(&mut state, 0.01, 0.2), "on is above the threshold, not at it");
+        assert!(!gate.update(&mut state, -0.001, 5.0), "a push outside the surface is not contact");
+        assert!(gate.update(&mut state, 0.0, 0.21));
+        for _ in 0..4 {
+            assert!(gate.update(&mut state, 0.001, 0.0), "four samples away are a flicker");
+        }
+        assert!(gate.update(&mut state, 0.001, 0.06), "and one above the lower threshold forgives them");
+        let left: usize = (0..5).map(|_| usize::from(!gate.update(&mut state, -0.001, 1.0))).sum();
+        assert_eq!(left, 1, "the fifth sample outside the surface ends it");
+    }
+}

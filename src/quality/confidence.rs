@@ -1,0 +1,35 @@
+//! How sure an estimate is.
+
+use crate::contact::Impedance;
+use crate::math::sym2::Sym2;
+
+/// The parts of the uncertainty of one estimate, in internal units.
+///
+/// The variance of the estimate is `c * noise`, c being the number of samples that one independent value of the noise is
+/// worth; beside it stand two errors that averaging does not reduce, `remainder` and `offset_gain` times the force that a
+/// misplaced surface makes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Confidence {
+    /// Variance of the estimate if the residuals that were seen are white noise.
+    pub noise: Sym2,
+    /// The same for white noise of variance one.
+    pub noise_gain: Sym2,
+    /// How far the estimate still is from what it moves towards: what is left of the start in a recursive law, the way
+    /// still to go of a descent.
+    pub remainder: Impedance,
+    /// Change of the estimate for a constant force of one unit.
+    pub offset_gain: Impedance,
+    /// Samples that the estimate rests on, by weight.
+    pub samples: f32,
+}
+
+impl Confidence {
+    /// Nothing is known.
+    pub const NONE: Self = Self {
+        noise: Sym2::UNKNOWN,
+        noise_gain: Sym2::UNKNOWN,
+        remainder: Impedance::ZERO,
+        offset_gain: Impedance::ZERO,
+        samples: 0.0,
+    };
+}

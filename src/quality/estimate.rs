@@ -1,0 +1,180 @@
+//! What the user gets: two numbers, how sure they are, and what to beware of.
+
+use crate::contact::Impedance;
+use crate::error::{ConfigError, require_not_negative};
+use crate::front_end::FrontEnd;
+use crate::math::{larger, near_sqrt};
+use crate::quality::flags::Flags;
+use crate::quality::step::Step;
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Serialize};
+
+/// An estimate with its quality, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// K and B; zero out of contact.
+    pub impedance: Impedance,
+    /// Half-widths of the 95 % intervals; infinite where nothing is known, zero out of contact.
+    pub half_width: Impedance,
+    /// Force minus what the estimate before this sample predicted [N or N m]; out of contact the force itself.
+    pub innovation: f32,
+    /// Share of the window or memory that is filled, 0 to 1.
+    pub fill: f32,
+    /// Independence of penetration and rate, 0 to 1.
+    pub excitation: f32,
+    /// What to beware of.
+    pub flags: Flags,
+}
+
+impl Estimate {
+    /// Something is touched and nothing is known of it.
+    pub const UNKNOWN: Self = Self {
+        half_width: Impedance { stiffness: f32::INFINITY, damping: f32::INFINITY },
+        flags: Flags::HELD,
+        ..Self::NO_CONTACT
+    };
+
+    /// Nothing is touched.
+    pub const NO_CONTACT: Self = Self {
+        impedance: Impedance::ZERO,
+        half_width: Impedance::ZERO,
+        innovation: 0.0,
+        fill: 0.0,
+        excitation: 0.0,
+        flags: Flags::NO_CONTACT,
+    };
+}
+
+/// What the sensors cannot resolve, in SI; zero where it is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct Sensors {
+    /// One count of the position sensor [m or rad].
+    pub position_resolution: f32,
+    /// Standard deviation of the force sensor's noise, its rounding included [N or N m]. Where it is given, a window too
+    /// short to measure it has intervals all the same.
+    pub force_noise: f32,
+}
+
+impl Sensors {
+    pub(crate) fn check(self) -> Result<(), ConfigError> {
+        require_not_negative(self.position_resolution, "sensors.position_resolution")?;
+        require_not_negative(self.force_noise, "sensors.force_noise")
+    }
+}
+
+/// Turns what a law found into an [`Estimate`]: internal to SI, confidence to intervals.
+///
+/// The half-width is `sqrt(t^2 variance + (0.95 offset_gain K * half a count)^2) + |remainder|`, with the parts of
+/// [`crate::Confidence`]: the surface lies anywhere within a count, so 95 % of its places lie within 0.95 of half a count, and
+/// two independent errors add as squares. The residual is coloured by the filter, so n samples count as n over
+/// `correlated_samples`; t is Student's for that number less two, or for ten where the force noise is known beforehand; and
+/// the noise is never taken to be less than that of both sensors. It covers noise, rounding, start-up and a misplaced
+/// surface; not the bias of a model, of [`crate::Velocity::Paper`], or of a motion of angular frequency w sampled every T
+/// seconds, (w T)^2 / 12 of B.
+#[derive(Debug, Clone, Copy)]
+pub struct Assessor {
+    /// One internal unit of K and of B.
+    unit: Impedance,
+    force_unit: f32,
+    correlated_samples: f32,
+    half_count: f32,
+    position_variance: f32,
+    force_variance: f32,
+}
+
+impl Assessor {
+    /// Share of the value above which an interval is flagged.
+    const WIDE: f32 = 0.3;
+
+    /// Share of half a count within which 95 % of the surfaces lie that are anywhere in it.
+    const PLACES: f32 = 0.95;
+
+    /// Degrees of freedom that a force noise known beforehand is trusted for.
+    const KNOWN: f32 = 10.0;
+
+    pub(crate) fn new(front_end: &FrontEnd, sensors: Sensors) -> Self {
+        let units = front_end.config().units;
+        let position = sensors.position_resolution / units.penetration;
+        let force = sensors.force_noise / units.force;
+        Self {
+            unit: units.impedance(),
+            force_unit: units.force,
+            correlated_samples: front_end.correlated_samples(),
+            half_count: 0.5 * position,
+            position_variance: position * position / 12.0,
+            force_variance: force * force,
+        }
+    }
+
+    /// The estimate in SI.
+    pub fn assess(&self, step: &Step) -> Estimate {
+        let half_width = self.half_width(step);
+        let mut flags = step.flags;
+        flags.set(Flags::FILLING, step.fill < 0.99);
+        flags.set(Flags::NEGATIVE, step.estimate.stiffness < 0.0 || step.estimate.damping < 0.0);
+        let wide = |half_width: f32, value: f32| half_width > Self::WIDE * value.abs();
+        flags.set(Flags::STIFFNESS_UNCERTAIN, wide(half_width.stiffness, step.estimate.stiffness));
+        flags.set(Flags::DAMPING_UNCERTAIN, wide(half_width.damping, step.estimate.damping));
+        Estimate {
+            impedance: self.in_si(step.estimate),
+            half_width: self.in_si(half_width),
+            innovation: step.innovation * self.force_unit,
+            fill: step.fill,
+            excitation: step.excitation,
+            flags,
+        }
+    }
+
+    fn in_si(&self, internal: Impedance) -> Impedance {
+        Impedance { stiffness: internal.stiffness * self.unit.stiffness, damping: internal.damping * self.unit.damping }
+    }
+
+    fn half_width(&self, step: &Step) -> Impedance {
+        let c = &step.confidence;
+        let stiffness = step.estimate.stiffness;
+        let known = self.force_variance + stiffness * stiffness * self.position_variance;
+        let measured = c.samples / self.correlated_samples - 2.0;
+        let t = student(if self.force_variance > 0.0 { larger(measured, Self::KNOWN) } else { measured });
+        let surface = Self::PLACES * stiffness * self.half_count;
+        let width = |noise: f32, gain: f32, remainder: f32, offset: f32| {
+            let variance = larger(noise * self.correlated_samples, known * gain);
+            // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
+            let variance = if variance < 0.0 { 0.0 } else { variance };
+            let misplaced = offset * surface;
+            let width = near_sqrt(t * t * variance + misplaced * misplaced) + remainder.abs();
+            if width.is_nan() { f32::INFINITY } else { width }
+        };
+        Impedance {
+            stiffness: width(c.noise.xx, c.noise_gain.xx, c.remainder.stiffness, c.offset_gain.stiffness),
+            damping: width(c.noise.vv, c.noise_gain.vv, c.remainder.damping, c.offset_gain.damping),
+        }
+    }
+}
+
+/// The 97.5 % point of Student's distribution within 4 %, infinite below one degree of freedom.
+fn student(freedom: f32) -> f32 {
+    if freedom >= 1.0 {
+        let inverse = 1.0 / freedom;
+        1.96 + inverse * (2.4 + inverse * (2.0 + inverse * 6.3))
+    } else {
+        f32::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quantile_is_that_of_the_printed_tables() {
+        for (freedom, quantile) in
+            [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (5.0, 2.571), (10.0, 2.228), (30.0, 2.042), (1e4, 1.960)]
+        {
+            let error = student(freedom) / quantile - 1.0;
+            assert!(error.abs() < 0.04, "{freedom}: {error}");
+        }
+        assert_eq!(student(0.9), f32::INFINITY);
+        assert_eq!(student(f32::NAN), f32::INFINITY);
+    }
+}

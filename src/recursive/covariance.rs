@@ -1,0 +1,97 @@
+//! The covariance of recursive least squares, factored so that it cannot lose its sign.
+
+use crate::contact::{Impedance, Observation};
+use crate::math::smaller;
+use crate::math::sym2::Sym2;
+
+/// `P = U diag(d1, d2) U'` with `U = [[1, u], [0, 1]]` (Bierman, Factorization Methods for Discrete Sequential
+/// Estimation, 1977).
+///
+/// Every update multiplies d1 and d2 by positive numbers, so P stays symmetric and positive definite in single precision
+/// for any initial size, where the plain form `P - L phi' P` cancels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Covariance {
+    d1: f32,
+    d2: f32,
+    u: f32,
+}
+
+impl Covariance {
+    /// A multiple of the identity.
+    pub const fn identity(size: f32) -> Self {
+        Self { d1: size, d2: size, u: 0.0 }
+    }
+
+    /// `diag(stiffness, damping)`.
+    pub const fn diagonal(stiffness: f32, damping: f32) -> Self {
+        Self { d1: stiffness, d2: damping, u: 0.0 }
+    }
+
+    /// One observation of weight one, then division by the forgetting factor. Returns the gain `P phi / s` with
+    /// `s = forgetting + phi' P phi` of the covariance before.
+    pub fn observe(&mut self, o: &Observation, forgetting: f32) -> Impedance {
+        self.observe_with(o, forgetting, 1.0 / forgetting)
+    }
+
+    /// The same with `growth`, the inverse of the forgetting factor, at hand.
+    #[inline(always)]
+    pub(crate) fn observe_with(&mut self, o: &Observation, forgetting: f32, growth: f32) -> Impedance {
+        let f1 = o.penetration;
+        let f2 = o.rate + self.u * f1;
+        let (g1, g2) = (self.d1 * f1, self.d2 * f2);
+        let a1 = forgetting + f1 * g1;
+        let a2 = a1 + f2 * g2;
+        let (inverse1, inverse2) = (1.0 / a1, 1.0 / a2);
+        let gain = Impedance { stiffness: (g1 + self.u * g2) * inverse2, damping: g2 * inverse2 };
+        self.u -= g1 * f2 * inverse1;
+        self.d1 *= inverse1;
+        self.d2 *= a1 * inverse2 * growth;
+        gain
+    }
+
+    /// Adds `kick` times the identity, `kick` >= 0.
+    pub fn inflate(&mut self, kick: f32) {
+        let d2 = self.d2 + kick;
+        let share = self.d2 / d2;
+        self.d1 += kick + self.u * self.u * kick * share;
+        self.u *= share;
+        self.d2 = d2;
+    }
+
+    /// Keeps both factors at or below `limit`; whether one had to be cut.
+    pub fn limit(&mut self, limit: f32) -> bool {
+        self.limit_each(Impedance { stiffness: limit, damping: limit })
+    }
+
+    /// As [`Self::limit`], with a limit of its own for the factor of each parameter.
+    pub fn limit_each(&mut self, limits: Impedance) -> bool {
+        let cut = self.d1 > limits.stiffness || self.d2 > limits.damping;
+        self.d1 = smaller(self.d1, limits.stiffness);
+        self.d2 = smaller(self.d2, limits.damping);
+        cut
+    }
+
+    /// P itself.
+    pub fn matrix(&self) -> Sym2 {
+        let xv = self.u * self.d2;
+        Sym2 { xx: self.d1 + self.u * xv, xv, vv: self.d2 }
+    }
+
+    /// Whether it is a covariance: finite, as their sum tells, and positive on both factors.
+    pub fn is_sound(&self) -> bool {
+        self.total().is_finite() && self.d1 > 0.0 && self.d2 > 0.0
+    }
+
+    /// A number that is finite only where all are.
+    #[inline(always)]
+    pub(crate) fn total(&self) -> f32 {
+        self.d1 + self.d2 + self.u
+    }
+
+    /// Whether it is plainly a covariance within `limit`, if it is finite: of positive factors with a product that is no less.
+    /// Where this is false, [`Self::is_sound`] and [`Self::limit`] tell.
+    #[inline(always)]
+    pub(crate) fn is_plain(&self, limit: f32) -> bool {
+        self.d1 + self.d2 <= limit && self.d1 * self.d2 > 0.0
+    }
+}

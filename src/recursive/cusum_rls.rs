@@ -1,0 +1,131 @@
+//! Recursive least squares that begins again where its innovation says that the material has changed.
+
+use crate::change_detector::{ChangeConfig, ChangeState};
+use crate::contact::{Impedance, Observation};
+use crate::error::{ConfigError, require};
+use crate::prior::Prior;
+use crate::quality::Confidence;
+use crate::quality::Flags;
+use crate::quality::Step;
+use crate::recursive::covariance::Covariance;
+use crate::recursive::state::RecursiveState;
+use crate::update_law::Law;
+use crate::window::Recent;
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Serialize};
+
+/// Settings of [`CusumRls`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct CusumRlsConfig {
+    /// lambda, above 0.5 and at most 1: a long memory, for what jumps is seen to by the detector and this by what drifts.
+    pub forgetting_factor: f32,
+    /// What is believed at the first sample, about zero, and after a change, about the estimate.
+    pub prior: Prior,
+    /// When to begin again.
+    pub change: ChangeConfig,
+}
+
+impl Default for CusumRlsConfig {
+    /// A memory of 500 samples, and the defaults of [`Prior`] and [`ChangeConfig`].
+    fn default() -> Self {
+        Self { forgetting_factor: 0.998, prior: Prior::default(), change: ChangeConfig::default() }
+    }
+}
+
+/// Exponentially weighted least squares whose covariance goes back to its prior at a change that a cumulative sum of the
+/// innovation has found: quick where the material jumps, quiet where it does not.
+///
+/// **The one to take** where K may change: on the paper's bench behind a matched filter of 40 Hz it has K within 10 % in less than
+/// 30 ms of an onset, follows a jump within 45 ms, and scatters by less than 0.1 % of K in between. It keeps no window (under 150 bytes
+/// of state), costs a third less than block least squares, and its intervals begin anew with it. `docs/paper.md` has it beside
+/// the others. Where the material drifts without rest, or the model fits badly, [`crate::BlockLeastSquares`] of a short window
+/// is the plainer choice; where nothing ever changes, [`crate::Ewrls`] with a factor near 1.
+#[derive(Debug, Clone, Copy)]
+pub struct CusumRls {
+    config: CusumRlsConfig,
+    variances: Impedance,
+    /// Inverse of the forgetting factor.
+    growth: f32,
+    /// Of the covariance, which a held contact would let grow without end.
+    limits: Impedance,
+}
+
+/// State of [`CusumRls`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CusumRlsState {
+    /// Estimate and covariance.
+    pub recursion: RecursiveState,
+    change: ChangeState,
+}
+
+impl CusumRls {
+    /// The covariance may grow to this multiple of the prior's.
+    const ROOM: f32 = 4.0;
+
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: CusumRlsConfig) -> Result<Self, ConfigError> {
+        let lambda = config.forgetting_factor;
+        require(lambda > 0.5 && lambda <= 1.0, "forgetting_factor", "above 0.5 and at most 1")?;
+        config.change.check()?;
+        let variances = config.prior.check()?.variances();
+        Ok(Self { config, variances, growth: 1.0 / lambda, limits: Impedance::ZERO.moved(Self::ROOM, variances) })
+    }
+
+    fn from(&self, estimate: Impedance, change: ChangeState) -> CusumRlsState {
+        CusumRlsState { recursion: RecursiveState::believing(self.prior(), estimate), change }
+    }
+
+    fn prior(&self) -> Covariance {
+        Covariance::diagonal(self.variances.stiffness, self.variances.damping)
+    }
+
+    /// Begins again where the innovation says so, then takes in `o`.
+    fn advance(&self, state: &mut CusumRlsState, o: &Observation) -> (f32, Impedance, Flags) {
+        let innovation = o.misfit(state.recursion.estimate);
+        let changed = self.config.change.update(&mut state.change, innovation);
+        if changed {
+            *state = self.from(state.recursion.estimate, state.change);
+        }
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe_with(o, self.config.forgetting_factor, self.growth);
+        let limited = covariance.limit_each(self.limits);
+        let mut flags = state.recursion.commit_or(gain, innovation, covariance, self.prior());
+        flags.set(Flags::LIMITED, limited);
+        flags.set(Flags::CHANGED, changed);
+        (innovation, gain, flags)
+    }
+
+    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::learn`].
+    pub fn learn(&self, state: &mut CusumRlsState, o: &Observation) -> f32 {
+        self.advance(state, o).0
+    }
+}
+
+impl Law for CusumRls {
+    type State = CusumRlsState;
+
+    fn start(&self) -> CusumRlsState {
+        self.from(Impedance::ZERO, ChangeState::default())
+    }
+
+    fn forget(&self, state: &mut CusumRlsState) {
+        *state = self.from(state.recursion.estimate, ChangeState::default());
+    }
+
+    fn window(&self) -> usize {
+        1
+    }
+
+    fn update(&self, state: &mut CusumRlsState, recent: Recent<'_>) -> Step {
+        let o = recent.newest().unwrap_or_default();
+        let (innovation, gain, flags) = self.advance(state, &o);
+        let step = state.recursion.step(&o, gain, innovation, self.config.forgetting_factor, flags);
+        // Numbers at the end of the range leave nothing to tell.
+        let c = &step.confidence;
+        if (c.noise.xx + c.noise_gain.xx).is_nan() { Step { confidence: Confidence::NONE, ..step } } else { step }
+    }
+}

@@ -1,0 +1,164 @@
+//! Self-perturbing recursive least squares (SPRLS).
+
+use core::cmp::Ordering;
+
+use crate::contact::{Impedance, Observation};
+use crate::error::{ConfigError, require_not_negative};
+use crate::math::smaller;
+use crate::quality::Flags;
+use crate::quality::MEMORY;
+use crate::quality::Step;
+use crate::recursive::covariance::Covariance;
+use crate::recursive::state::{RecursiveState, check_covariance};
+use crate::update_law::Law;
+use crate::window::Recent;
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Serialize};
+
+/// Settings of [`Sprls`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct SprlsConfig {
+    /// beta >= 0: size of one step of the kick, internal units (the paper's beta, 100).
+    pub perturbation_gain: f32,
+    /// gamma >= 0: steps of the kick per squared residual, internal units (the paper's gamma, 2 per N^2). Residuals
+    /// below sqrt(0.5 / gamma) do not kick.
+    pub perturbation_sensitivity: f32,
+    /// P(0) = `initial_covariance` * I, above 0, at most 1e8.
+    pub initial_covariance: f32,
+    /// Bound of the covariance, at least `initial_covariance`, at most 1e9.
+    pub covariance_limit: f32,
+}
+
+impl Default for SprlsConfig {
+    /// The paper's: beta 100, gamma 2, P(0) = 10.
+    fn default() -> Self {
+        Self {
+            perturbation_gain: 100.0,
+            perturbation_sensitivity: 2.0,
+            initial_covariance: 10.0,
+            covariance_limit: 1e6,
+        }
+    }
+}
+
+/// Recursive least squares without forgetting whose covariance is kicked by its own residual:
+///
+/// ```text
+/// P = P - L phi' P + beta * NINT(gamma e'^2) I
+/// ```
+/// where `e'` is the innovation of the step before (the paper's e(k-1) in the update to k+1), and NINT rounds to the
+/// nearest whole number, halves away from zero.
+#[derive(Debug, Clone, Copy)]
+pub struct Sprls {
+    config: SprlsConfig,
+}
+
+/// State of [`Sprls`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SprlsState {
+    /// Estimate and covariance.
+    pub recursion: RecursiveState,
+    /// Innovation of the update before, zero at the start.
+    pub innovation_before: f32,
+}
+
+impl Sprls {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn new(config: SprlsConfig) -> Result<Self, ConfigError> {
+        require_not_negative(config.perturbation_gain, "perturbation_gain")?;
+        require_not_negative(config.perturbation_sensitivity, "perturbation_sensitivity")?;
+        check_covariance(config.initial_covariance, config.covariance_limit)?;
+        Ok(Self { config })
+    }
+
+    /// `beta * NINT(gamma e^2)`, bounded by the limit of the covariance.
+    pub fn kick(&self, innovation: f32) -> f32 {
+        let level = self.config.perturbation_sensitivity * innovation * innovation;
+        // From 2^23 on a single-precision number is whole already.
+        let steps = if level < 8_388_608.0 { (level + 0.5) as u32 as f32 } else { level };
+        smaller(self.config.perturbation_gain * steps, self.config.covariance_limit)
+    }
+}
+
+impl Sprls {
+    /// Whether `innovation` may kick: less than half a step is none. Not a number may.
+    #[inline(always)]
+    fn kicks(&self, innovation: f32) -> bool {
+        let level = self.config.perturbation_sensitivity * innovation * innovation;
+        level.partial_cmp(&0.499_999) != Some(Ordering::Less)
+    }
+
+    /// The kick of the innovation before, where there is one.
+    fn perturb(&self, covariance: &mut Covariance, innovation: f32) {
+        let kick = self.kick(innovation);
+        if kick > 0.0 {
+            covariance.inflate(kick);
+        }
+    }
+
+    fn from(&self, estimate: Impedance) -> SprlsState {
+        SprlsState { recursion: RecursiveState::new(self.config.initial_covariance, estimate), innovation_before: 0.0 }
+    }
+}
+
+impl Sprls {
+    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::learn`].
+    pub fn learn(&self, state: &mut SprlsState, o: &Observation) -> f32 {
+        let innovation = o.misfit(state.recursion.estimate);
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe_with(o, 1.0, 1.0);
+        let quiet = !self.kicks(state.innovation_before);
+        if quiet && state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
+            state.innovation_before = innovation;
+            innovation
+        } else {
+            self.learn_perturbed(state, o)
+        }
+    }
+
+    /// The same where the covariance is kicked, has to be limited, or begins anew.
+    #[cold]
+    fn learn_perturbed(&self, state: &mut SprlsState, o: &Observation) -> f32 {
+        let innovation = o.misfit(state.recursion.estimate);
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe_with(o, 1.0, 1.0);
+        self.perturb(&mut covariance, state.innovation_before);
+        covariance.limit(self.config.covariance_limit);
+        state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
+        state.innovation_before = innovation;
+        innovation
+    }
+}
+
+impl Law for Sprls {
+    type State = SprlsState;
+
+    fn start(&self) -> SprlsState {
+        self.from(Impedance::ZERO)
+    }
+
+    fn forget(&self, state: &mut SprlsState) {
+        *state = self.from(state.recursion.estimate);
+    }
+
+    fn window(&self) -> usize {
+        1
+    }
+
+    fn update(&self, state: &mut SprlsState, recent: Recent<'_>) -> Step {
+        let o = recent.newest().unwrap_or_default();
+        let innovation = o.misfit(state.recursion.estimate);
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe_with(&o, 1.0, 1.0);
+        self.perturb(&mut covariance, state.innovation_before);
+        let limited = covariance.limit(self.config.covariance_limit);
+        let mut flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
+        flags.set(Flags::LIMITED, limited);
+        state.innovation_before = innovation;
+        state.recursion.step(&o, gain, innovation, MEMORY, flags)
+    }
+}

@@ -1,0 +1,122 @@
+//! What the recursive least-squares laws share: estimate, covariance, uncertainty.
+
+use crate::contact::{Impedance, Observation};
+use crate::error::{ConfigError, require, require_positive};
+use crate::math::smaller;
+use crate::quality::Flags;
+use crate::quality::Propagation;
+use crate::quality::Step;
+use crate::recursive::covariance::Covariance;
+
+/// Forgetting factor, at most, of what tells fill and excitation: a sum in single precision over a memory of a thousand
+/// samples is exact to 1e-4, and one that never forgets would stop growing.
+const LONGEST_MEMORY: f32 = 0.999;
+
+/// The state of a recursive least-squares law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RecursiveState {
+    /// K and B, internal units.
+    pub estimate: Impedance,
+    /// Covariance per unit of noise variance.
+    pub covariance: Covariance,
+    uncertainty: Propagation,
+}
+
+impl RecursiveState {
+    /// The estimate without what is left in it of the zero that it started from; `None` until both parameters have been told.
+    ///
+    /// A small P(0) draws a recursion to its start for seconds. How much of the start is still in it is known, for its gains are:
+    /// `M (I - M)^-1 (start - estimate)` ([`Propagation`]). Taken off, what is left is the weighted least squares of the samples
+    /// alone. The state and its innovations stay as they are, so this can be asked for or left at any sample.
+    pub fn without_start(&self) -> Option<Impedance> {
+        let told = self.estimate.moved(-1.0, self.uncertainty.confidence(self.estimate).remainder);
+        told.is_finite().then_some(told)
+    }
+
+    /// With the estimate at `estimate` and all else at its start.
+    pub(crate) fn new(initial_covariance: f32, estimate: Impedance) -> Self {
+        Self::believing(Covariance::identity(initial_covariance), estimate)
+    }
+
+    /// With the estimate at `estimate`, believed as far as `covariance` says.
+    pub(crate) fn believing(covariance: Covariance, estimate: Impedance) -> Self {
+        Self { estimate, covariance, uncertainty: Propagation::new(estimate) }
+    }
+
+    /// Moves the estimate by `gain * innovation` and takes `covariance`, both or neither; where either is unsound, the
+    /// covariance starts anew.
+    #[inline(always)]
+    pub(crate) fn commit(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        initial_covariance: f32,
+    ) -> Flags {
+        self.commit_or(gain, innovation, covariance, Covariance::identity(initial_covariance))
+    }
+
+    /// The same, with the covariance that it starts anew from.
+    #[inline(always)]
+    pub(crate) fn commit_or(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        initial: Covariance,
+    ) -> Flags {
+        let estimate = self.estimate.moved(innovation, gain);
+        if covariance.is_sound() && estimate.is_finite() {
+            (self.estimate, self.covariance) = (estimate, covariance);
+            Flags::empty()
+        } else {
+            self.covariance = initial;
+            Flags::RESET
+        }
+    }
+
+    /// The same where nothing is out of the ordinary: both are finite, and the covariance needs no limit. Else nothing is taken.
+    #[inline(always)]
+    pub(crate) fn commit_plain(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        limit: f32,
+    ) -> bool {
+        let estimate = self.estimate.moved(innovation, gain);
+        // A sum that is finite has no part that is not.
+        let total = estimate.stiffness + estimate.damping + covariance.total();
+        let plain = covariance.is_plain(limit) && total.is_finite();
+        if plain {
+            (self.estimate, self.covariance) = (estimate, covariance);
+        }
+        plain
+    }
+
+    /// The outcome, told with the memory that `forgetting` gives.
+    #[inline(always)]
+    pub(crate) fn step(
+        &mut self,
+        o: &Observation,
+        gain: Impedance,
+        innovation: f32,
+        forgetting: f32,
+        flags: Flags,
+    ) -> Step {
+        let forgetting = smaller(forgetting, LONGEST_MEMORY);
+        self.uncertainty.advance(o, gain, innovation, forgetting);
+        self.uncertainty.step(self.estimate, innovation, forgetting, flags)
+    }
+}
+
+/// Checks a covariance that may grow up to `limit`.
+pub(crate) fn check_covariance(initial: f32, limit: f32) -> Result<(), ConfigError> {
+    check_initial_covariance(initial)?;
+    require(limit >= initial && limit <= 1e9, "covariance_limit", "at least initial_covariance and at most 1e9")
+}
+
+pub(crate) fn check_initial_covariance(value: f32) -> Result<(), ConfigError> {
+    require_positive(value, "initial_covariance")?;
+    require(value <= 1e8, "initial_covariance", "at most 1e8 internal units")
+}
