@@ -3,7 +3,7 @@
 use crate::reference;
 use crate::simulator::Noise;
 use palpate::direct::{BlockLeastMeanFourth, BlockLeastSquares};
-use palpate::{BlockConfig, Direction, Impedance, Law, Observation, Recent};
+use palpate::{BlockConfig, Direction, Impedance, Observation, Recent, UpdateLaw};
 
 const K: f64 = 300.0;
 const B: f64 = 5.0;
@@ -20,8 +20,8 @@ fn window(mut noise: impl FnMut() -> f64) -> Vec<Observation> {
 }
 
 /// The estimates of `law` on one window, step after step, from zero.
-fn descend<L: Law>(law: &L, window: &[Observation], steps: usize) -> Vec<Impedance> {
-    let mut state = law.start();
+fn descend<L: UpdateLaw>(law: &L, window: &[Observation], steps: usize) -> Vec<Impedance> {
+    let mut state = law.initial_state();
     (0..steps).map(|_| law.update(&mut state, Recent::of(window)).estimate).collect()
 }
 

@@ -1,10 +1,10 @@
 //! The double-precision reference, and in places the library itself, against vectors from other people's libraries.
 
-use crate::reference::{self, Prior, Row, Theta};
+use crate::reference::{self, Prior, RegressionRow, Theta};
 use crate::tolerance::{Ledger, close};
 use palpate::{
     BlockConfig, BlockLeastSquares, Direction, Ewrls, EwrlsConfig, FrontEnd, FrontEndConfig, FrontEndState, Impedance,
-    Law, Observation, Recent, Sample, direct,
+    Observation, Recent, Sample, UpdateLaw, direct,
 };
 use std::path::Path;
 
@@ -35,13 +35,14 @@ impl Table {
         k.into_iter().zip(b).map(|(k, b)| Theta::new(k, b)).collect()
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> Vec<RegressionRow> {
         let (x, v, force) = (self.column("penetration"), self.column("rate"), self.column("force"));
-        (0..x.len()).map(|i| Row { x: x[i], v: v[i], force: force[i] }).collect()
+        (0..x.len()).map(|i| RegressionRow { x: x[i], v: v[i], force: force[i] }).collect()
     }
 
     fn observations(&self) -> Vec<Observation> {
-        let single = |r: Row| Observation { penetration: r.x as f32, rate: r.v as f32, force: r.force as f32 };
+        let single =
+            |r: RegressionRow| Observation { penetration: r.x as f32, rate: r.v as f32, force: r.force as f32 };
         self.rows().into_iter().map(single).collect()
     }
 }
@@ -78,7 +79,7 @@ fn the_library_forgets_like_padasip_and_rolls_like_statsmodels() {
     let ewrls = EwrlsConfig { forgetting_factor: 0.98, initial_covariance: 1e3, ..EwrlsConfig::default() };
     let ewrls = Ewrls::new(ewrls).expect("sound settings");
     let bls = BlockLeastSquares::new(BlockConfig::of(50)).expect("sound settings");
-    let (mut recursion, mut block) = (ewrls.start(), bls.start());
+    let (mut recursion, mut block) = (ewrls.initial_state(), bls.initial_state());
     let (forgetting, rolling) = (table.pair("forgetting"), table.pair("rolling"));
     let [mut ewrls_errors, mut bls_errors] = [Ledger::default(), Ledger::default()];
     for k in 0..observations.len() {

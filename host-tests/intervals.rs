@@ -5,7 +5,7 @@
 //! the onset itself, when the laws that carry a start with them are still far from the truth and have to know it.
 
 use crate::simulator::{Noise, Trial};
-use palpate::{Bench, BenchConfig, BlockConfig, Flags, Method, Sensors, StreamConfig};
+use palpate::{BlockConfig, EstimatorBank, EstimatorBankConfig, Flags, Method, SensorResolution, StreamConfig};
 
 const SEEDS: u64 = 150;
 
@@ -29,16 +29,16 @@ impl Coverage {
 }
 
 fn measure(trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; LAWS] {
-    measure_with(&BenchConfig::every(StreamConfig::BENCH), trial, truth, from)
+    measure_with(&EstimatorBankConfig::all_methods(StreamConfig::BENCH), trial, truth, from)
 }
 
-fn measure_with(settings: &BenchConfig, trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; LAWS] {
+fn measure_with(settings: &EstimatorBankConfig, trial: &Trial, truth: [f64; 2], from: usize) -> [Coverage; LAWS] {
     let mut coverage = [Coverage::default(); LAWS];
     let mut noise = Noise::new(77);
     for seed in 0..SEEDS {
         let surface = 1e-4 * (noise.uniform() - 0.5);
         let samples = Trial { surface, ..trial.clone() }.samples(1000 + seed);
-        let mut bench = Bench::new(settings).expect("sound settings");
+        let mut bench = EstimatorBank::new(settings).expect("sound settings");
         for (k, sample) in samples.iter().enumerate() {
             let estimates = bench.update(*sample).expect("a good sample");
             if k < from || k % 150 != 0 {
@@ -142,10 +142,10 @@ fn settled_on_the_medium_bench() {
 /// Fifty filtered samples are worth two independent ones, too few to measure the noise by.
 #[test]
 fn of_a_short_window_where_the_noise_is_known_and_where_it_is_not() {
-    let unknown = Sensors { force_noise: 0.0, ..StreamConfig::BENCH.sensors };
+    let unknown = SensorResolution { force_noise: 0.0, ..StreamConfig::BENCH.sensors };
     for (sensors, known) in [(StreamConfig::BENCH.sensors, 1.0), (unknown, 0.0)] {
         let stream = StreamConfig { sensors, ..StreamConfig::BENCH };
-        let settings = BenchConfig { block: BlockConfig::of(50), ..BenchConfig::every(stream) };
+        let settings = EstimatorBankConfig { block: BlockConfig::of(50), ..EstimatorBankConfig::all_methods(stream) };
         let coverage = measure_with(&settings, &soft(), [300.0, 5.0], SETTLED_FROM);
         report("window 50, K 300, B 5", &coverage);
         let bls = coverage[Method::Bls as usize];

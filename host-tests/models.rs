@@ -3,8 +3,8 @@
 use crate::reference;
 use crate::simulator::Noise;
 use palpate::{
-    BlockConfig, BlockLeastSquares, ChangeConfig, ContactModel, Ewrls, EwrlsConfig, FrontEndConfig, Law, ModelStream,
-    ParameterRls, ParameterRlsConfig, Row, Sample, Window, contact_plane,
+    BlockConfig, BlockLeastSquares, ChangeConfig, ContactModel, Ewrls, EwrlsConfig, FrontEndConfig, ModelStream,
+    ParameterRls, ParameterRlsConfig, RegressionRow, Sample, UpdateLaw, Window, contact_plane,
 };
 use std::f64::consts::TAU;
 
@@ -30,7 +30,7 @@ fn samples(seconds: f64, noise: f64, count: f64, seed: u64, law: impl Fn(f64, f6
 
 const FRONT_END: FrontEndConfig = FrontEndConfig { cutoff: 30.0, ..FrontEndConfig::BENCH };
 
-fn rows(model: ContactModel, samples: &[Sample]) -> (Vec<Row>, f32) {
+fn rows(model: ContactModel, samples: &[Sample]) -> (Vec<RegressionRow>, f32) {
     let mut stream = ModelStream::new(FRONT_END, model).expect("sound settings");
     let rows = samples.iter().map(|sample| stream.update(*sample).expect("a good sample"));
     (rows.filter(|row| row.contact && !row.restarted).collect(), stream.correlated_samples())
@@ -51,7 +51,7 @@ fn found<const P: usize>(model: ContactModel, samples: &[Sample], spreads: [f32;
     assert_eq!(model.parameters(), P);
     let (rows, correlated) = rows(model, samples);
     let law = ParameterRls::new(config(spreads, correlated)).expect("sound settings");
-    let mut state = law.start();
+    let mut state = law.initial_state();
     rows.iter().for_each(|row| {
         law.update(&mut state, row.first(), row.force);
     });
@@ -125,7 +125,7 @@ fn the_recursion_of_three_parameters_is_the_batch() {
     let (rows, correlated) = rows(ContactModel::BiasedKelvinVoigt, &samples(1.5, 0.09, 1e-4, 7, law));
     let settings = ParameterRlsConfig { change: None, ..config([1e3, 30.0, 10.0], correlated) };
     let recursion = ParameterRls::new(settings).expect("sound settings");
-    let mut state = recursion.start();
+    let mut state = recursion.initial_state();
     let mut batch = Vec::new();
     let ridge = settings.spreads.map(|spread| f64::from(settings.noise / spread).powi(2));
     for (k, row) in rows.iter().enumerate() {
@@ -151,10 +151,10 @@ fn at_two_parameters_it_is_the_exponentially_weighted_law() {
     let general = ParameterRls::new(settings).expect("sound settings");
     let special = EwrlsConfig { initial_covariance: 1e4, covariance_limit: 1e4, forgetting_factor: 0.9967 };
     let special = Ewrls::new(special).expect("sound settings");
-    let (mut a, mut b) = (general.start(), special.start());
+    let (mut a, mut b) = (general.initial_state(), special.initial_state());
     for row in &rows {
         general.update(&mut a, row.first(), row.force);
-        special.learn(&mut b, &row.observation());
+        special.update_estimate(&mut b, &row.observation());
     }
     let [stiffness, damping] = a.parameters;
     assert!((stiffness / b.estimate.stiffness - 1.0).abs() < 1e-4, "{a:?}, {b:?}");
@@ -165,7 +165,7 @@ fn at_two_parameters_it_is_the_exponentially_weighted_law() {
 fn a_law_of_two_parameters_passes_through_any_estimator() {
     let (rows, _) = rows(SPHERE, &samples(2.0, 0.09, 1e-4, 9, sphere));
     let law = BlockLeastSquares::new(BlockConfig::default()).expect("sound settings");
-    let (mut state, mut window) = (law.start(), Window::<300>::new());
+    let (mut state, mut window) = (law.initial_state(), Window::<300>::new());
     let mut last = None;
     for row in &rows {
         window.push(row.observation());
@@ -187,7 +187,7 @@ fn bad_samples_and_wild_rows_leave_nothing_behind() {
         assert!(row.force.is_finite() && row.regressor.iter().all(|column| column.is_finite()), "{row:?}");
     }
     let law = ParameterRls::new(config([1e3, 30.0, 10.0], 15.0)).expect("sound settings");
-    let (mut state, mut noise) = (law.start(), Noise::new(3));
+    let (mut state, mut noise) = (law.initial_state(), Noise::new(3));
     for _ in 0..20_000 {
         let mut wild = || (10_f64.powf(24.0 * noise.uniform() - 12.0) * (noise.uniform() - 0.5).signum()) as f32;
         let row = [wild(), wild(), wild()];

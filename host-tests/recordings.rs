@@ -1,6 +1,6 @@
 //! Real recordings, where they are to be had.
 
-use palpate::{FrontEndConfig, GateConfig, Observation, Sample, Units, Velocity};
+use palpate::{ContactDetectorConfig, FrontEndConfig, Observation, Sample, Units, Velocity};
 use std::path::PathBuf;
 
 /// One recorded trial, ready for the front end.
@@ -91,7 +91,11 @@ fn prepare(source: &Source, rows: &[[f64; 3]]) -> Recording {
             cutoff: source.cutoff,
             velocity: Velocity::Matched,
             bilateral: false,
-            gate: GateConfig { on_force: threshold as f32, off_force: (0.2 * threshold) as f32, off_samples: 5 },
+            contact_detector: ContactDetectorConfig {
+                on_force: threshold as f32,
+                off_force: (0.2 * threshold) as f32,
+                off_samples: 5,
+            },
             units: Units::for_range(range),
         },
     }

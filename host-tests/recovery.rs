@@ -5,7 +5,7 @@ use crate::rig;
 use crate::simulator::Trial;
 use crate::tolerance::close;
 use nalgebra::Matrix2;
-use palpate::{Bench, BenchConfig, EwrlsConfig, FrontEndConfig, Method, StreamConfig, Velocity};
+use palpate::{EstimatorBank, EstimatorBankConfig, EwrlsConfig, FrontEndConfig, Method, StreamConfig, Velocity};
 use std::f64::consts::{SQRT_2, TAU};
 
 /// Five seconds in one contact.
@@ -14,13 +14,14 @@ fn long(trial: Trial) -> Trial {
 }
 
 /// A bench whose plain RLS has no prior to speak of: with the paper's it is 10 % of the answer after 5 s.
-fn bench(stream: StreamConfig) -> Bench {
+fn bench(stream: StreamConfig) -> EstimatorBank {
     let rls = EwrlsConfig { initial_covariance: 1e5, ..EwrlsConfig::rls() };
-    Bench::new(&BenchConfig { rls, ..BenchConfig::every(stream) }).expect("sound settings")
+    EstimatorBank::new(&EstimatorBankConfig { rls, ..EstimatorBankConfig::all_methods(stream) })
+        .expect("sound settings")
 }
 
 /// Samples that a law averages over, at least: its window, its horizon; for the gradient law the inverse of the part of a
-/// misfit that one sample takes away; and just after a reset the five whose rates weigh as much as P(0)^-1 = 0.1 does.
+/// residual that one sample takes away; and just after a reset the five whose rates weigh as much as P(0)^-1 = 0.1 does.
 fn memory(method: Method) -> f64 {
     match method {
         Method::Gradient => 50.0,
@@ -38,7 +39,7 @@ fn every_law_finds_stiffness_and_damping_within_four_deviations_of_the_noise() {
         let mut bench = bench(StreamConfig::BENCH);
         let last = rig::run(&mut bench, &trial.samples(seed)).pop().expect("samples").expect("a good sample");
         let mut rows = Vec::new();
-        bench.recent().last(300).for_each(|&o| rows.push(reference::Row::from(o)));
+        bench.recent().last(300).for_each(|&o| rows.push(reference::RegressionRow::from(o)));
         let information: Matrix2<f64> = rows.iter().map(|r| r.regressor() * r.regressor().transpose()).sum();
         let per_sample = (information / 300.0).try_inverse().expect("excitation");
         for ((method, e), worst) in Method::ALL.iter().zip(&last).zip(&mut worst) {

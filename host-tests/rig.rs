@@ -1,24 +1,25 @@
 //! All laws on one stream, with the settings of the paper.
 
 use palpate::{
-    AdaptiveWindow, AdaptiveWindowConfig, Bench, BenchConfig, BenchEstimates, BlockConfig, BlockLeastMeanFourth,
-    BlockLeastMeanSquare, BlockLeastSquares, CusumRls, CusumRlsConfig, Direction, DirectionalRls, DirectionalRlsConfig,
-    Estimate, Ewrls, EwrlsConfig, Gradient, GradientConfig, Law, Method, Observation, Rejection, ResetRls,
-    ResetRlsConfig, Sample, Sprls, SprlsConfig, Step, StreamConfig, Window,
+    AdaptiveWindow, AdaptiveWindowConfig, BankEstimates, BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare,
+    BlockLeastSquares, CusumRls, CusumRlsConfig, Direction, DirectionalRls, DirectionalRlsConfig, Estimate,
+    EstimatorBank, EstimatorBankConfig, Ewrls, EwrlsConfig, Gradient, GradientConfig, Method, Observation, Rejection,
+    ResetRls, ResetRlsConfig, Sample, Sprls, SprlsConfig, Step, StreamConfig, UpdateLaw, Window,
 };
 
 /// Everything runs, the block laws on 300 samples.
-pub fn bench(stream: StreamConfig) -> Bench {
+pub fn bench(stream: StreamConfig) -> EstimatorBank {
     bench_with(stream, BlockConfig::default())
 }
 
 /// Everything runs, the block laws as `block` says.
-pub fn bench_with(stream: StreamConfig, block: BlockConfig) -> Bench {
-    Bench::new(&BenchConfig { block, ..BenchConfig::every(stream) }).expect("sound settings")
+pub fn bench_with(stream: StreamConfig, block: BlockConfig) -> EstimatorBank {
+    EstimatorBank::new(&EstimatorBankConfig { block, ..EstimatorBankConfig::all_methods(stream) })
+        .expect("sound settings")
 }
 
 /// What came of each sample.
-pub fn run(bench: &mut Bench, samples: &[Sample]) -> Vec<Result<BenchEstimates, Rejection>> {
+pub fn run(bench: &mut EstimatorBank, samples: &[Sample]) -> Vec<Result<BankEstimates, Rejection>> {
     samples.iter().map(|sample| bench.update(*sample)).collect()
 }
 
@@ -33,7 +34,7 @@ pub fn bits(estimate: &Estimate) -> [u32; 8] {
 
 /// Fails where two outcomes differ in any bit of any method.
 #[track_caller]
-pub fn same(what: &str, got: &Result<BenchEstimates, Rejection>, want: &Result<BenchEstimates, Rejection>) {
+pub fn same(what: &str, got: &Result<BankEstimates, Rejection>, want: &Result<BankEstimates, Rejection>) {
     match (got, want) {
         (Ok(got), Ok(want)) => {
             for (method, (got, want)) in Method::ALL.iter().zip(got.iter().zip(want)) {
@@ -51,8 +52,8 @@ pub struct Bare {
 }
 
 impl Bare {
-    fn new<L: Law + 'static>(method: Method, law: L) -> Self {
-        let (mut state, mut window) = (law.start(), Window::<300>::new());
+    fn new<L: UpdateLaw + 'static>(method: Method, law: L) -> Self {
+        let (mut state, mut window) = (law.initial_state(), Window::<300>::new());
         let update = move |o| {
             window.push(o);
             law.update(&mut state, window.recent())

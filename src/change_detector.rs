@@ -94,7 +94,7 @@ mod tests {
             "22 a sample: in the sixth it is beyond 120"
         );
         assert_eq!(alarms(|k| if k == 500 { 9.0 } else { 0.04 }, 2000), 0, "one spike");
-        assert_eq!(alarms(|k| 0.08 * if k % 2 == 0 { 1.0 } else { -1.0 }, 5000), 0, "a misfit within the allowance");
+        assert_eq!(alarms(|k| 0.08 * if k % 2 == 0 { 1.0 } else { -1.0 }, 5000), 0, "a residual within the allowance");
         assert_eq!(alarms(|_| f32::NAN, 500), 0, "what is no number is no change");
     }
 }

@@ -37,7 +37,7 @@ impl Observation {
     }
 
     /// Force minus prediction: the innovation where `estimate` is older than this row, else the residual.
-    pub fn misfit(&self, estimate: Impedance) -> f32 {
+    pub fn residual(&self, estimate: Impedance) -> f32 {
         self.force - self.predicted_by(estimate)
     }
 }

@@ -15,7 +15,7 @@ use crate::recursive::{Ewrls, EwrlsConfig};
 use crate::recursive::{Gradient, GradientConfig};
 use crate::recursive::{ResetRls, ResetRlsConfig};
 use crate::recursive::{Sprls, SprlsConfig};
-use crate::stream::{Checked, Stream, StreamConfig, Tracker};
+use crate::stream::{EstimatorState, Stream, StreamConfig, ValidatedStreamConfig};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +51,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them, in the order of [`BenchEstimates`].
+    /// All of them, in the order of [`BankEstimates`].
     pub const ALL: [Self; 12] = [
         Self::Rls,
         Self::Ewrls,
@@ -131,10 +131,10 @@ impl Methods {
     }
 }
 
-/// Settings of a [`Bench`].
+/// Settings of a [`EstimatorBank`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
-pub struct BenchConfig {
+pub struct EstimatorBankConfig {
     /// What all share.
     pub stream: StreamConfig,
     /// Which of them run.
@@ -149,15 +149,15 @@ pub struct BenchConfig {
     pub reset_rls: ResetRlsConfig,
     /// Of `gradient`.
     pub gradient: GradientConfig,
-    /// Of all block methods; the window, also the longest of `adaptive_bls`, is at most [`BENCH_WINDOW`]. `cusum_rls` and
+    /// Of all block methods; the window, also the longest of `adaptive_bls`, is at most [`BANK_WINDOW`]. `cusum_rls` and
     /// `directional_rls` run with their defaults.
     pub block: BlockConfig,
 }
 
-impl BenchConfig {
+impl EstimatorBankConfig {
     /// Every method at its own defaults behind `stream`.
     #[must_use]
-    pub fn every(stream: StreamConfig) -> Self {
+    pub fn all_methods(stream: StreamConfig) -> Self {
         Self {
             stream,
             methods: Method::ALL.into_iter().fold(Methods::default(), Methods::with),
@@ -171,97 +171,97 @@ impl BenchConfig {
     }
 }
 
-/// Longest window of a [`Bench`], samples: 24 kB of the 128 kB of an STM32F405.
-pub const BENCH_WINDOW: usize = 2048;
+/// Longest window of a [`EstimatorBank`], samples: 24 kB of the 128 kB of an STM32F405.
+pub const BANK_WINDOW: usize = 2048;
 
 /// One estimate a method of [`Method::ALL`]; [`Estimate::NO_CONTACT`] where the method does not run.
-pub type BenchEstimates = [Estimate; Method::ALL.len()];
+pub type BankEstimates = [Estimate; Method::ALL.len()];
 
 /// All methods on one stream.
 #[derive(Debug, Clone)]
-pub struct Bench {
+pub struct EstimatorBank {
     methods: Methods,
-    stream: Stream<BENCH_WINDOW>,
+    stream: Stream<BANK_WINDOW>,
     laws: Laws,
 }
 
 /// One of each.
 #[derive(Debug, Clone)]
 struct Laws {
-    rls: Tracker<Ewrls>,
-    ewrls: Tracker<Ewrls>,
-    sprls: Tracker<Sprls>,
-    reset_rls: Tracker<ResetRls>,
-    gradient: Tracker<Gradient>,
-    bls: Tracker<BlockLeastSquares>,
-    blms: Tracker<BlockLeastMeanSquare>,
-    blmf: Tracker<BlockLeastMeanFourth>,
-    newton_blmf: Tracker<BlockLeastMeanFourth>,
-    cusum_rls: Tracker<CusumRls>,
-    adaptive_bls: Tracker<AdaptiveWindow>,
-    directional_rls: Tracker<DirectionalRls>,
+    rls: EstimatorState<Ewrls>,
+    ewrls: EstimatorState<Ewrls>,
+    sprls: EstimatorState<Sprls>,
+    reset_rls: EstimatorState<ResetRls>,
+    gradient: EstimatorState<Gradient>,
+    bls: EstimatorState<BlockLeastSquares>,
+    blms: EstimatorState<BlockLeastMeanSquare>,
+    blmf: EstimatorState<BlockLeastMeanFourth>,
+    newton_blmf: EstimatorState<BlockLeastMeanFourth>,
+    cusum_rls: EstimatorState<CusumRls>,
+    adaptive_bls: EstimatorState<AdaptiveWindow>,
+    directional_rls: EstimatorState<DirectionalRls>,
 }
 
 /// All of a bench but its ring.
 #[derive(Debug, Clone)]
-pub struct BenchParts {
+pub struct ValidatedBankConfig {
     methods: Methods,
-    stream: Checked,
+    stream: ValidatedStreamConfig,
     laws: Laws,
 }
 
-impl BenchParts {
+impl ValidatedBankConfig {
     /// Checks all settings.
     ///
     /// # Errors
     /// The first field that is out of range.
-    pub fn of(config: &BenchConfig) -> Result<Self, ConfigError> {
-        require(usize::from(config.block.window) <= BENCH_WINDOW, "window", "at most 2048 samples")?;
+    pub fn new(config: &EstimatorBankConfig) -> Result<Self, ConfigError> {
+        require(usize::from(config.block.window) <= BANK_WINDOW, "window", "at most 2048 samples")?;
         let fourth = |direction| BlockLeastMeanFourth::new(config.block, direction);
         let laws = Laws {
-            rls: Tracker::new(Ewrls::new(config.rls)?),
-            ewrls: Tracker::new(Ewrls::new(config.ewrls)?),
-            sprls: Tracker::new(Sprls::new(config.sprls)?),
-            reset_rls: Tracker::new(ResetRls::new(config.reset_rls)?),
-            gradient: Tracker::new(Gradient::new(config.gradient)?),
-            bls: Tracker::new(BlockLeastSquares::new(config.block)?),
-            blms: Tracker::new(BlockLeastMeanSquare::new(config.block)?),
-            blmf: Tracker::new(fourth(Direction::SteepestDescent)?),
-            newton_blmf: Tracker::new(fourth(Direction::Newton)?),
-            cusum_rls: Tracker::new(CusumRls::new(CusumRlsConfig::default())?),
-            adaptive_bls: Tracker::new(AdaptiveWindow::new(AdaptiveWindowConfig::of(config.block.window))?),
-            directional_rls: Tracker::new(DirectionalRls::new(DirectionalRlsConfig::default())?),
+            rls: EstimatorState::new(Ewrls::new(config.rls)?),
+            ewrls: EstimatorState::new(Ewrls::new(config.ewrls)?),
+            sprls: EstimatorState::new(Sprls::new(config.sprls)?),
+            reset_rls: EstimatorState::new(ResetRls::new(config.reset_rls)?),
+            gradient: EstimatorState::new(Gradient::new(config.gradient)?),
+            bls: EstimatorState::new(BlockLeastSquares::new(config.block)?),
+            blms: EstimatorState::new(BlockLeastMeanSquare::new(config.block)?),
+            blmf: EstimatorState::new(fourth(Direction::SteepestDescent)?),
+            newton_blmf: EstimatorState::new(fourth(Direction::Newton)?),
+            cusum_rls: EstimatorState::new(CusumRls::new(CusumRlsConfig::default())?),
+            adaptive_bls: EstimatorState::new(AdaptiveWindow::new(AdaptiveWindowConfig::of(config.block.window))?),
+            directional_rls: EstimatorState::new(DirectionalRls::new(DirectionalRlsConfig::default())?),
         };
-        Ok(Self { methods: config.methods, stream: Checked::of(config.stream)?, laws })
+        Ok(Self { methods: config.methods, stream: ValidatedStreamConfig::new(config.stream)?, laws })
     }
 }
 
-impl Bench {
+impl EstimatorBank {
     /// Checks all settings, also of methods that do not run.
     ///
     /// # Errors
     /// The first field that is out of range.
-    pub fn new(config: &BenchConfig) -> Result<Self, ConfigError> {
-        Ok(Self::of(BenchParts::of(config)?))
+    pub fn new(config: &EstimatorBankConfig) -> Result<Self, ConfigError> {
+        Ok(Self::from_validated(ValidatedBankConfig::new(config)?))
     }
 
     /// It cannot fail, so that who holds a bench can have it made where it is to be: a second one does not fit every stack.
-    pub fn of(parts: BenchParts) -> Self {
-        Self { methods: parts.methods, stream: Stream::of(parts.stream), laws: parts.laws }
+    pub fn from_validated(validated: ValidatedBankConfig) -> Self {
+        Self { methods: validated.methods, stream: Stream::from_validated(validated.stream), laws: validated.laws }
     }
 
     /// Takes other settings in place, and forgets everything: bounded work, without a second bench.
-    pub fn configure(&mut self, parts: &BenchParts) {
-        self.stream.configure(parts.stream);
-        self.methods = parts.methods;
-        self.laws.clone_from(&parts.laws);
+    pub fn configure(&mut self, validated: &ValidatedBankConfig) {
+        self.stream.configure(validated.stream);
+        self.methods = validated.methods;
+        self.laws.clone_from(&validated.laws);
     }
 
     /// One sample through every method that runs.
     ///
     /// # Errors
     /// Why the sample was rejected; then nothing but the clock has moved.
-    pub fn update(&mut self, sample: Sample) -> Result<BenchEstimates, Rejection> {
+    pub fn update(&mut self, sample: Sample) -> Result<BankEstimates, Rejection> {
         let event = self.stream.update(sample)?;
         let (stream, methods, laws) = (&self.stream, self.methods, &mut self.laws);
         Ok(Method::ALL.map(|method| {
@@ -269,18 +269,18 @@ impl Bench {
                 return Estimate::NO_CONTACT;
             }
             match method {
-                Method::Rls => laws.rls.follow(stream, &event),
-                Method::Ewrls => laws.ewrls.follow(stream, &event),
-                Method::Sprls => laws.sprls.follow(stream, &event),
-                Method::ResetRls => laws.reset_rls.follow(stream, &event),
-                Method::Gradient => laws.gradient.follow(stream, &event),
-                Method::Bls => laws.bls.follow(stream, &event),
-                Method::Blms => laws.blms.follow(stream, &event),
-                Method::Blmf => laws.blmf.follow(stream, &event),
-                Method::NewtonBlmf => laws.newton_blmf.follow(stream, &event),
-                Method::CusumRls => laws.cusum_rls.follow(stream, &event),
-                Method::AdaptiveBls => laws.adaptive_bls.follow(stream, &event),
-                Method::DirectionalRls => laws.directional_rls.follow(stream, &event),
+                Method::Rls => laws.rls.update(stream, &event),
+                Method::Ewrls => laws.ewrls.update(stream, &event),
+                Method::Sprls => laws.sprls.update(stream, &event),
+                Method::ResetRls => laws.reset_rls.update(stream, &event),
+                Method::Gradient => laws.gradient.update(stream, &event),
+                Method::Bls => laws.bls.update(stream, &event),
+                Method::Blms => laws.blms.update(stream, &event),
+                Method::Blmf => laws.blmf.update(stream, &event),
+                Method::NewtonBlmf => laws.newton_blmf.update(stream, &event),
+                Method::CusumRls => laws.cusum_rls.update(stream, &event),
+                Method::AdaptiveBls => laws.adaptive_bls.update(stream, &event),
+                Method::DirectionalRls => laws.directional_rls.update(stream, &event),
             }
         }))
     }

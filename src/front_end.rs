@@ -7,9 +7,9 @@ mod model_stream;
 mod samples;
 mod units;
 
-pub use contact_detector::{GateConfig, GateState};
-pub use contact_model::{ContactModel, MOST_PARAMETERS, contact_plane};
+pub use contact_detector::{ContactDetectorConfig, ContactDetectorState};
+pub use contact_model::{ContactModel, MAX_PARAMETERS, contact_plane};
 pub use low_pass::{LowPass, LowPassState};
-pub use model_stream::{ModelStream, Row};
+pub use model_stream::{ModelStream, RegressionRow};
 pub use samples::{Field, FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection, Velocity};
 pub use units::Units;

@@ -5,8 +5,8 @@ use crate::error::{ConfigError, require};
 use crate::front_end::Rejection;
 use crate::quality::Estimate;
 use crate::recursive::{CusumRls, CusumRlsConfig};
-use crate::stream::{Stream, StreamConfig, Tracker};
-use crate::update_law::Law;
+use crate::stream::{EstimatorState, Stream, StreamConfig};
+use crate::update_law::UpdateLaw;
 
 /// Front end, ring of `N` observations, one law.
 ///
@@ -21,9 +21,9 @@ use crate::update_law::Law;
 /// - [`crate::BlockLeastMeanFourth`] along Newton's direction where the noise is bounded and never spikes;
 /// - [`crate::DirectionalRls`] for a tool that is often held still.
 #[derive(Debug, Clone)]
-pub struct Identifier<L: Law = CusumRls, const N: usize = 1> {
+pub struct Identifier<L: UpdateLaw = CusumRls, const N: usize = 1> {
     stream: Stream<N>,
-    tracker: Tracker<L>,
+    tracker: EstimatorState<L>,
 }
 
 impl Identifier {
@@ -36,14 +36,14 @@ impl Identifier {
     }
 }
 
-impl<L: Law, const N: usize> Identifier<L, N> {
+impl<L: UpdateLaw, const N: usize> Identifier<L, N> {
     /// Checks the settings against each other.
     ///
     /// # Errors
     /// The first field that is out of range, or a window longer than `N`.
     pub fn new(config: StreamConfig, law: L) -> Result<Self, ConfigError> {
         require(law.window() <= N, "window", "at most N, the ring's capacity")?;
-        Ok(Self { stream: Stream::new(config)?, tracker: Tracker::new(law) })
+        Ok(Self { stream: Stream::new(config)?, tracker: EstimatorState::new(law) })
     }
 
     /// One sample: bounded work, no allocation, no panic. Call it from the interrupt.
@@ -52,7 +52,7 @@ impl<L: Law, const N: usize> Identifier<L, N> {
     /// Why the sample was rejected. Then nothing but the clock has moved, and the next good sample goes on.
     pub fn update(&mut self, sample: Sample) -> Result<Estimate, Rejection> {
         let event = self.stream.update(sample)?;
-        Ok(self.tracker.follow(&self.stream, &event))
+        Ok(self.tracker.update(&self.stream, &event))
     }
 
     /// What the law has learnt.

@@ -32,7 +32,7 @@
 //! | module | what |
 //! |---|---|
 //! | [`Sample`], [`Impedance`] | the model, its units and signs |
-//! | [`FrontEnd`] | penetration, velocity, contact gate; rejection of bad samples |
+//! | [`FrontEnd`] | penetration, velocity, contact detection; rejection of bad samples |
 //! | [`CusumRls`] | **the law to take**: recursive, begins again where the material changes |
 //! | [`Ewrls`], [`Sprls`], [`ResetRls`], [`Gradient`], [`DirectionalRls`] | other recursive laws |
 //! | [`BlockLeastSquares`], [`BlockLeastMeanSquare`], [`BlockLeastMeanFourth`] | laws on a window, at the same cost whatever its length |
@@ -41,9 +41,9 @@
 //! | [`direct`] | the same, summed anew at every sample |
 //! | [`Estimate`], [`Flags`] | the answer and its quality |
 //! | [`Identifier`] | all of it for one law |
-//! | [`Bench`] | all laws side by side |
+//! | [`EstimatorBank`] | all laws side by side |
 //!
-//! Sensors, faults, calibration and link of a drive are in the crate `palpate-drive`.
+//! SensorResolution, faults, calibration and link of a drive are in the crate `palpate-drive`.
 //!
 //! Equation numbers are those of the paper that compared the laws on a one-degree-of-freedom bench.
 
@@ -73,22 +73,24 @@ pub use block::{
 pub use change_detector::{ChangeConfig, ChangeState};
 pub use contact::{Impedance, Observation, Sample};
 pub use error::ConfigError;
-pub use estimator_bank::{BENCH_WINDOW, Bench, BenchConfig, BenchEstimates, BenchParts, Method, Methods};
+pub use estimator_bank::{
+    BANK_WINDOW, BankEstimates, EstimatorBank, EstimatorBankConfig, Method, Methods, ValidatedBankConfig,
+};
 pub use front_end::{
-    ContactModel, Field, FrontEnd, FrontEndConfig, FrontEndState, GateConfig, GateState, LowPass, LowPassState,
-    MOST_PARAMETERS, ModelStream, Reading, Rejection, Row, Units, Velocity, contact_plane,
+    ContactDetectorConfig, ContactDetectorState, ContactModel, Field, FrontEnd, FrontEndConfig, FrontEndState, LowPass,
+    LowPassState, MAX_PARAMETERS, ModelStream, Reading, RegressionRow, Rejection, Units, Velocity, contact_plane,
 };
 pub use identifier::Identifier;
 pub use math::sym2::Sym2;
 pub use prior::Prior;
-pub use quality::{Assessor, Confidence, Estimate, Flags, Propagation, Sensors, Step};
+pub use quality::{Confidence, Estimate, Flags, IntervalEstimator, SensorResolution, Step, UncertaintyPropagation};
 pub use recursive::{
     Covariance, CusumRls, CusumRlsConfig, CusumRlsState, DirectionalRls, DirectionalRlsConfig, DirectionalRlsState,
     Ewrls, EwrlsConfig, Gradient, GradientConfig, GradientState, ParameterRls, ParameterRlsConfig, ParameterState,
     ParameterStep, RecursiveState, ResetRls, ResetRlsConfig, ResetRlsState, Sprls, SprlsConfig, SprlsState,
 };
-pub use stream::{ContactLoss, Event, Stream, StreamConfig, Tracker};
-pub use update_law::Law;
+pub use stream::{ContactLoss, EstimatorState, Event, Stream, StreamConfig};
+pub use update_law::UpdateLaw;
 pub use window::{Recent, Window};
 
 /// The README's example is a test, too.

@@ -7,8 +7,8 @@ mod propagation;
 mod step;
 
 pub use confidence::Confidence;
-pub use estimate::{Assessor, Estimate, Sensors};
+pub use estimate::{Estimate, IntervalEstimator, SensorResolution};
 pub use flags::Flags;
-pub(crate) use propagation::MEMORY;
-pub use propagation::Propagation;
+pub(crate) use propagation::DEFAULT_FORGETTING;
+pub use propagation::UncertaintyPropagation;
 pub use step::Step;

@@ -5,8 +5,8 @@ use crate::error::ConfigError;
 use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection};
 use crate::math::{larger, smaller};
 use crate::quality::Flags;
-use crate::quality::{Assessor, Estimate, Sensors};
-use crate::update_law::Law;
+use crate::quality::{Estimate, IntervalEstimator, SensorResolution};
+use crate::update_law::UpdateLaw;
 use crate::window::{Recent, Window};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ pub struct StreamConfig {
     /// Position, velocity, contact.
     pub front_end: FrontEndConfig,
     /// What the sensors resolve, for the intervals.
-    pub sensors: Sensors,
+    pub sensors: SensorResolution,
     /// What a loss of contact makes forgotten.
     pub contact_loss: ContactLoss,
     /// Samples after which a movement is half forgotten, for [`Flags::LITTLE_MOVEMENT`]; at least 1.
@@ -42,7 +42,7 @@ impl StreamConfig {
     /// The paper's bench: matched filter, 0.1 mm a count, 0.09 N of noise, everything forgotten at a loss.
     pub const BENCH: Self = Self {
         front_end: FrontEndConfig::BENCH,
-        sensors: Sensors { position_resolution: 1e-4, force_noise: 0.09 },
+        sensors: SensorResolution { position_resolution: 1e-4, force_noise: 0.09 },
         contact_loss: ContactLoss::Everything,
         movement_memory: 300,
     };
@@ -52,7 +52,7 @@ impl StreamConfig {
 #[derive(Debug, Clone)]
 pub struct Stream<const N: usize> {
     front_end: FrontEnd,
-    assessor: Assessor,
+    assessor: IntervalEstimator,
     contact_loss: ContactLoss,
     four_counts: f32,
     movement_decay: f32,
@@ -65,22 +65,22 @@ pub struct Stream<const N: usize> {
 
 /// Settings that can be, with what follows from them.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Checked {
+pub(crate) struct ValidatedStreamConfig {
     front_end: FrontEnd,
-    assessor: Assessor,
+    assessor: IntervalEstimator,
     contact_loss: ContactLoss,
     four_counts: f32,
     movement_decay: f32,
 }
 
-impl Checked {
-    pub(crate) fn of(config: StreamConfig) -> Result<Self, ConfigError> {
+impl ValidatedStreamConfig {
+    pub(crate) fn new(config: StreamConfig) -> Result<Self, ConfigError> {
         let front_end = FrontEnd::new(config.front_end)?;
         config.sensors.check()?;
         crate::error::require(config.movement_memory > 0, "movement_memory", "at least 1 sample")?;
         Ok(Self {
             front_end,
-            assessor: Assessor::new(&front_end, config.sensors),
+            assessor: IntervalEstimator::new(&front_end, config.sensors),
             contact_loss: config.contact_loss,
             four_counts: 4.0 * config.sensors.position_resolution / config.front_end.units.penetration,
             movement_decay: core::f32::consts::LN_2 / f32::from(config.movement_memory),
@@ -105,17 +105,17 @@ impl<const N: usize> Stream<N> {
     /// # Errors
     /// The first field that is out of range.
     pub fn new(config: StreamConfig) -> Result<Self, ConfigError> {
-        Ok(Self::of(Checked::of(config)?))
+        Ok(Self::from_validated(ValidatedStreamConfig::new(config)?))
     }
 
     /// It cannot fail, so that who holds a large one can have it made where it is to be.
-    pub(crate) fn of(checked: Checked) -> Self {
+    pub(crate) fn from_validated(validated: ValidatedStreamConfig) -> Self {
         Self {
-            front_end: checked.front_end,
-            assessor: checked.assessor,
-            contact_loss: checked.contact_loss,
-            four_counts: checked.four_counts,
-            movement_decay: checked.movement_decay,
+            front_end: validated.front_end,
+            assessor: validated.assessor,
+            contact_loss: validated.contact_loss,
+            four_counts: validated.four_counts,
+            movement_decay: validated.movement_decay,
             state: FrontEndState::default(),
             window: Window::new(),
             in_contact: false,
@@ -159,10 +159,10 @@ impl<const N: usize> Stream<N> {
     }
 
     /// Takes other settings in place, and forgets everything.
-    pub(crate) fn configure(&mut self, checked: Checked) {
+    pub(crate) fn configure(&mut self, validated: ValidatedStreamConfig) {
         (self.front_end, self.assessor, self.contact_loss) =
-            (checked.front_end, checked.assessor, checked.contact_loss);
-        (self.four_counts, self.movement_decay) = (checked.four_counts, checked.movement_decay);
+            (validated.front_end, validated.assessor, validated.contact_loss);
+        (self.four_counts, self.movement_decay) = (validated.four_counts, validated.movement_decay);
         self.restart();
     }
 
@@ -186,21 +186,21 @@ impl<const N: usize> Stream<N> {
 
 /// One law with what it has learnt.
 #[derive(Debug, Clone)]
-pub struct Tracker<L: Law> {
+pub struct EstimatorState<L: UpdateLaw> {
     law: L,
     state: L::State,
     last: Estimate,
 }
 
-impl<L: Law> Tracker<L> {
+impl<L: UpdateLaw> EstimatorState<L> {
     /// At the start.
     pub fn new(law: L) -> Self {
-        Self { state: law.start(), law, last: Estimate::UNKNOWN }
+        Self { state: law.initial_state(), law, last: Estimate::UNKNOWN }
     }
 
     /// Forgets what has been learnt.
     pub fn restart(&mut self) {
-        self.state = self.law.start();
+        self.state = self.law.initial_state();
         self.last = Estimate::UNKNOWN;
     }
 
@@ -210,11 +210,11 @@ impl<L: Law> Tracker<L> {
     }
 
     /// Follows `event`, which `stream` has just returned.
-    pub fn follow<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Estimate {
+    pub fn update<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Estimate {
         if event.lost {
             match stream.contact_loss {
-                ContactLoss::Everything => self.state = self.law.start(),
-                ContactLoss::Memory => self.law.forget(&mut self.state),
+                ContactLoss::Everything => self.state = self.law.initial_state(),
+                ContactLoss::Memory => self.law.reset_memory(&mut self.state),
                 ContactLoss::Nothing => {}
             }
         }

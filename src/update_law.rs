@@ -6,16 +6,16 @@ use crate::window::Recent;
 /// An estimation law. The implementor is the checked configuration; what it has learnt is in `State`.
 ///
 /// All numbers are in internal units ([`crate::Units`]). Observations are finite and at most
-/// [`crate::FrontEnd::RANGE`] in size; under that condition no update leaves the state non-finite.
-pub trait Law {
+/// [`crate::FrontEnd::MAX_MAGNITUDE`] in size; under that condition no update leaves the state non-finite.
+pub trait UpdateLaw {
     /// What is learnt.
     type State: Clone + core::fmt::Debug;
 
     /// The state before the first observation of a contact.
-    fn start(&self) -> Self::State;
+    fn initial_state(&self) -> Self::State;
 
     /// Forgets what the estimate rests on (covariance, noise, window) but keeps the estimate itself.
-    fn forget(&self, state: &mut Self::State);
+    fn reset_memory(&self, state: &mut Self::State);
 
     /// How many of the latest observations it looks at; 1 for a recursive law.
     fn window(&self) -> usize;

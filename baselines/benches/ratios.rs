@@ -2,8 +2,8 @@
 
 use divan::{Bencher, black_box};
 use palpate::{
-    BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Ewrls, EwrlsConfig, Law, Observation, Recent,
-    direct,
+    BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Ewrls, EwrlsConfig, Observation, Recent,
+    UpdateLaw, direct,
 };
 use palpate_baselines::{Adskalman, Kfilter, NalgebraRls, minikalman, nalgebra_window};
 
@@ -64,9 +64,9 @@ fn mini(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn ewrls_alone(bencher: Bencher<'_, '_>) {
     let law = Ewrls::new(EwrlsConfig::default()).expect("sound settings");
-    let mut state = law.start();
+    let mut state = law.initial_state();
     each(bencher, |o| {
-        black_box(law.learn(&mut state, o));
+        black_box(law.update_estimate(&mut state, o));
     });
 }
 
@@ -79,11 +79,11 @@ fn windows(bencher: Bencher<'_, '_>, window: usize, mut update: impl FnMut(Recen
     });
 }
 
-fn law(bencher: Bencher<'_, '_>, law: &impl Law) {
-    let mut state = law.start();
+fn law(bencher: Bencher<'_, '_>, law: &impl UpdateLaw) {
+    let mut state = law.initial_state();
     windows(bencher, law.window(), |recent| {
         if recent.len() == 1 {
-            state = law.start();
+            state = law.initial_state();
         }
         black_box(law.update(&mut state, recent));
     });

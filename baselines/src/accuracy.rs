@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix2, Vector2};
 use palpate::{
-    BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Ewrls, EwrlsConfig, Impedance, Law, Observation,
-    Recent, direct,
+    BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Ewrls, EwrlsConfig, Impedance, Observation,
+    Recent, UpdateLaw, direct,
 };
 use palpate_baselines::{Adskalman, COVARIANCE, FORGETTING, Kfilter, NalgebraRls, minikalman, nalgebra_window};
 
@@ -30,9 +30,9 @@ pub fn of(name: &str, window: Option<u16>, rows: &[Observation]) -> Option<f64> 
         "minikalman" => Some(recursive(rows, minikalman())),
         "ewrls" | "ewrls_alone" => {
             let law = Ewrls::new(EwrlsConfig::default()).ok()?;
-            let mut state = law.start();
+            let mut state = law.initial_state();
             Some(recursive(rows, |o| {
-                law.learn(&mut state, o);
+                law.update_estimate(&mut state, o);
                 state.estimate
             }))
         }
@@ -87,14 +87,14 @@ fn least_squares(rows: &[Observation]) -> Vector2<f64> {
     normal.try_inverse().map_or_else(Vector2::zeros, |inverse| inverse * right)
 }
 
-fn block(law: &impl Law, rows: &[Observation], last: usize) -> Option<f64> {
-    let mut state = law.start();
+fn block(law: &impl UpdateLaw, rows: &[Observation], last: usize) -> Option<f64> {
+    let mut state = law.initial_state();
     Some(windowed(rows, last, |recent| law.update(&mut state, recent).estimate))
 }
 
 /// One step from the same estimate, for a descent left to itself is chaotic.
-fn fourth(law: &impl Law, rows: &[Observation], last: usize) -> Option<f64> {
-    let (mut state, mut before, mut errors) = (law.start(), Impedance::ZERO, Vec::new());
+fn fourth(law: &impl UpdateLaw, rows: &[Observation], last: usize) -> Option<f64> {
+    let (mut state, mut before, mut errors) = (law.initial_state(), Impedance::ZERO, Vec::new());
     for k in 0..rows.len() {
         let seen = &rows[(k + 1).saturating_sub(last)..=k];
         let after = law.update(&mut state, Recent::of(seen)).estimate;

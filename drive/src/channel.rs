@@ -2,7 +2,7 @@
 
 /// What is remembered of one sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Channel {
+pub struct PlausibilityMonitor {
     last: Option<i32>,
     /// Ticks that it has said the same.
     same: u16,
@@ -12,14 +12,14 @@ pub struct Channel {
 
 /// What a reading is against those before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Doubts {
+pub struct Plausibility {
     /// It has been the same for too long.
     pub stuck: bool,
     /// It is further from the last one than it can have come.
     pub jumped: bool,
 }
 
-impl Channel {
+impl PlausibilityMonitor {
     /// No reading this time.
     pub fn miss(&mut self, elapsed: u8) {
         self.silent = self.silent.saturating_add(u16::from(elapsed));
@@ -27,13 +27,13 @@ impl Channel {
 
     /// A reading: stuck where it has been the same for `stuck_after` ticks (0: never), jumped where it moved by more than
     /// `step` counts a tick. The next reading is held against this one in any case, so a new place is believed at the second look.
-    pub fn take(&mut self, reading: i32, elapsed: u8, stuck_after: u16, step: i32) -> Doubts {
+    pub fn take(&mut self, reading: i32, elapsed: u8, stuck_after: u16, step: i32) -> Plausibility {
         let ticks = self.silent.saturating_add(u16::from(elapsed));
         self.silent = 0;
         let last = self.last.replace(reading);
         self.same = if last == Some(reading) { self.same.saturating_add(ticks) } else { 0 };
         let way = last.map_or(0, |last| reading.saturating_sub(last).saturating_abs());
-        Doubts {
+        Plausibility {
             stuck: stuck_after > 0 && self.same >= stuck_after,
             jumped: way > step.saturating_mul(i32::from(ticks)),
         }

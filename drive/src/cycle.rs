@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::{Calibration, PositionSensor, Scale};
-use crate::channel::Channel;
+use crate::channel::PlausibilityMonitor;
 use crate::counters::Counters;
 use crate::effort::{Bounds, effort, trusted};
-use crate::estimator::{Choice, Estimator};
+use crate::estimator::{Estimator, ValidatedSettings};
 use crate::faults::Faults;
-use crate::input::{Input, Notes};
+use crate::input::{Input, InputStatus};
 use crate::quadrature::Quadrature;
 use crate::tare::Tare;
 use crate::{TICK_HZ, ads8681, as5047p};
@@ -18,7 +18,7 @@ use palpate::Sample;
 
 /// What an estimate rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Standing {
+pub enum Validity {
     /// This tick's sample.
     Live,
     /// An earlier sample, no longer ago than the hold time.
@@ -50,14 +50,14 @@ pub struct Report {
     /// Every fault that holds, or held within the last ten to twenty ticks.
     pub faults: Faults,
     /// What the estimate rests on.
-    pub standing: Standing,
+    pub validity: Validity,
     /// The estimator began anew with this sample.
     pub restarted: bool,
     /// The number of the settings.
     pub revision: u8,
     /// The estimate.
     pub estimate: Estimate,
-    /// Count of the force sensor without force, as it is now.
+    /// CountersMessage of the force sensor without force, as it is now.
     pub zero: f32,
     /// For the current loop [N or N m].
     pub effort: f32,
@@ -73,8 +73,8 @@ pub struct Cycle<'a> {
     estimator: &'a mut Estimator,
     counters: &'a Counters,
     quadrature: Quadrature,
-    position: Channel,
-    force: Channel,
+    position: PlausibilityMonitor,
+    force: PlausibilityMonitor,
     tare: Option<Tare>,
     /// Faults that stay until acknowledged, or for good.
     lasting: Faults,
@@ -114,8 +114,8 @@ impl<'a> Cycle<'a> {
             estimator,
             counters,
             quadrature: Quadrature::default(),
-            position: Channel::default(),
-            force: Channel::default(),
+            position: PlausibilityMonitor::default(),
+            force: PlausibilityMonitor::default(),
             tare: None,
             lasting: found & Faults::LATCHED.union(Faults::STANDING),
             present: Faults::empty(),
@@ -135,7 +135,7 @@ impl<'a> Cycle<'a> {
         self.tick = self.tick.wrapping_add(u32::from(elapsed));
         self.owed = self.owed.saturating_add(u16::from(elapsed));
         self.held = self.held.saturating_add(u16::from(elapsed));
-        let mut faults = input.told();
+        let mut faults = input.faults();
         let counts = self.read(&input, elapsed, &mut faults);
         let sample = counts.map(|counts| self.sample(counts));
         let restarted = sample.is_some() && core::mem::take(&mut self.stale);
@@ -156,8 +156,8 @@ impl<'a> Cycle<'a> {
     }
 
     /// Takes other settings, and forgets the contact.
-    pub fn choose(&mut self, choice: &Choice) {
-        self.estimator.choose(choice);
+    pub fn apply(&mut self, settings: &ValidatedSettings) {
+        self.estimator.apply(settings);
         self.stale = true;
     }
 
@@ -180,7 +180,7 @@ impl<'a> Cycle<'a> {
     }
 
     fn read_position(&mut self, input: &Input, elapsed: u8, faults: &mut Faults) -> Option<i32> {
-        let absent = input.notes.intersects(Notes::NO_SAMPLE.union(Notes::NO_POSITION));
+        let absent = input.status.intersects(InputStatus::NO_SAMPLE.union(InputStatus::NO_POSITION));
         let depth = match self.calibration.position_sensor {
             _ if absent => None,
             PositionSensor::As5047p => match as5047p::angle(input.angle, input.diagnostics) {
@@ -191,7 +191,7 @@ impl<'a> Cycle<'a> {
                 }
             },
             PositionSensor::Quadrature => {
-                Some(self.quadrature.follow(input.angle).saturating_sub(self.calibration.surface))
+                Some(self.quadrature.update(input.angle).saturating_sub(self.calibration.surface))
             }
         };
         let Some(depth) = depth else {
@@ -210,7 +210,7 @@ impl<'a> Cycle<'a> {
     }
 
     fn read_force(&mut self, input: &Input, elapsed: u8, faults: &mut Faults) -> Option<i32> {
-        if input.notes.intersects(Notes::NO_SAMPLE.union(Notes::NO_FORCE)) {
+        if input.status.intersects(InputStatus::NO_SAMPLE.union(InputStatus::NO_FORCE)) {
             self.force.miss(elapsed);
             return None;
         }
@@ -271,23 +271,23 @@ impl<'a> Cycle<'a> {
     ) -> Report {
         self.counters.tick(now, live.is_some());
         let faults = self.remember(now);
-        let (standing, estimate) = match live {
-            Some(estimate) => (Standing::Live, estimate),
+        let (validity, estimate) = match live {
+            Some(estimate) => (Validity::Live, estimate),
             None if self.held <= self.estimator.hold() => {
-                (Standing::Held, Estimate { flags: self.last.flags | Flags::HELD, ..self.last })
+                (Validity::Held, Estimate { flags: self.last.flags | Flags::HELD, ..self.last })
             }
             None => {
                 self.stale = true;
-                (Standing::Void, Estimate::UNKNOWN)
+                (Validity::Void, Estimate::UNKNOWN)
             }
         };
-        let contact = trusted(&estimate, standing, faults, &self.bounds);
+        let contact = trusted(&estimate, validity, faults, &self.bounds);
         Report {
             tick: self.tick,
             input,
             sample: sample.filter(|_| live.is_some()),
             faults,
-            standing,
+            validity,
             restarted,
             revision: self.estimator.revision(),
             estimate,

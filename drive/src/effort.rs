@@ -1,6 +1,6 @@
 //! The one place where an estimate becomes what a force controller is given, and where its effort leaves the drive.
 
-use crate::cycle::Standing;
+use crate::cycle::Validity;
 use crate::faults::Faults;
 use palpate::Estimate;
 use palpate::Flags;
@@ -37,8 +37,8 @@ const DOUBTS: Flags = Flags::NO_CONTACT
 
 /// K and B for a controller, within `bounds`; `None` on any fault, with a held or void estimate, and where its flags say that
 /// nothing is known.
-pub fn trusted(estimate: &Estimate, standing: Standing, faults: Faults, bounds: &Bounds) -> Option<Impedance> {
-    let sound = standing == Standing::Live && faults.is_empty() && !estimate.flags.intersects(DOUBTS);
+pub fn trusted(estimate: &Estimate, validity: Validity, faults: Faults, bounds: &Bounds) -> Option<Impedance> {
+    let sound = validity == Validity::Live && faults.is_empty() && !estimate.flags.intersects(DOUBTS);
     let within = |value: f32, least: f32, most: f32| larger(smaller(value, most), least);
     (sound && estimate.impedance.is_finite()).then(|| Impedance {
         stiffness: within(estimate.impedance.stiffness, bounds.least.stiffness, bounds.most.stiffness),

@@ -5,13 +5,13 @@ use palpate::Estimate;
 use palpate::Rejection;
 use palpate::Sample;
 use palpate::error::ConfigError;
-use palpate::{Bench, BenchParts, Method};
+use palpate::{EstimatorBank, Method, ValidatedBankConfig};
 
-/// The estimator that [`Settings`] choose. It holds the state of all, 28 kB, so that a choice needs neither allocation nor a second
+/// The estimator that [`Settings`] choose. It holds the state of all, 28 kB, so that a settings needs neither allocation nor a second
 /// one.
 #[derive(Debug, Clone)]
 pub struct Estimator {
-    bench: Bench,
+    bank: EstimatorBank,
     method: Method,
     hold: u16,
     revision: u8,
@@ -19,21 +19,21 @@ pub struct Estimator {
 
 /// Settings that can be, with all that follows from them but the memory: what an idle loop works out and the interrupt takes.
 #[derive(Debug, Clone)]
-pub struct Choice {
-    parts: BenchParts,
+pub struct ValidatedSettings {
+    bank_config: ValidatedBankConfig,
     method: Method,
     hold: u16,
     revision: u8,
 }
 
-impl Choice {
+impl ValidatedSettings {
     /// Checks the settings; `revision` comes back with every estimate.
     ///
     /// # Errors
     /// The first setting that is out of range.
-    pub fn of(settings: &Settings, calibration: &Calibration, revision: u8) -> Result<Self, ConfigError> {
-        let parts = BenchParts::of(&settings.bench(calibration)?)?;
-        Ok(Self { parts, method: settings.method, hold: settings.hold, revision })
+    pub fn new(settings: &Settings, calibration: &Calibration, revision: u8) -> Result<Self, ConfigError> {
+        let bank_config = ValidatedBankConfig::new(&settings.bank_config(calibration)?)?;
+        Ok(Self { bank_config, method: settings.method, hold: settings.hold, revision })
     }
 }
 
@@ -43,14 +43,15 @@ impl Estimator {
     /// # Errors
     /// The first setting that is out of range.
     pub fn new(settings: &Settings, calibration: &Calibration, revision: u8) -> Result<Self, ConfigError> {
-        let Choice { parts, method, hold, revision } = Choice::of(settings, calibration, revision)?;
-        Ok(Self { bench: Bench::of(parts), method, hold, revision })
+        let ValidatedSettings { bank_config, method, hold, revision } =
+            ValidatedSettings::new(settings, calibration, revision)?;
+        Ok(Self { bank: EstimatorBank::from_validated(bank_config), method, hold, revision })
     }
 
     /// Takes other settings in place and forgets everything: bounded work, for the interrupt itself.
-    pub fn choose(&mut self, choice: &Choice) {
-        self.bench.configure(&choice.parts);
-        (self.method, self.hold, self.revision) = (choice.method, choice.hold, choice.revision);
+    pub fn apply(&mut self, settings: &ValidatedSettings) {
+        self.bank.configure(&settings.bank_config);
+        (self.method, self.hold, self.revision) = (settings.method, settings.hold, settings.revision);
     }
 
     /// One sample.
@@ -58,13 +59,13 @@ impl Estimator {
     /// # Errors
     /// Why it was rejected.
     pub fn update(&mut self, sample: Sample) -> Result<Estimate, Rejection> {
-        let all = self.bench.update(sample)?;
+        let all = self.bank.update(sample)?;
         Ok(all.get(self.method as usize).copied().unwrap_or(Estimate::UNKNOWN))
     }
 
     /// Forgets everything but the settings.
     pub fn restart(&mut self) {
-        self.bench.restart();
+        self.bank.restart();
     }
 
     /// Ticks that an estimate is held.

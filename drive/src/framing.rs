@@ -37,7 +37,7 @@ pub fn encode<'a, T: Serialize>(message: &T, line: &'a mut [u8; LINE_BYTES]) -> 
 
 /// What came over the line, counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Tally {
+pub struct LinkCounters {
     /// Whole frames of this version.
     pub frames: u32,
     /// Longer than any frame.
@@ -52,7 +52,7 @@ pub struct Tally {
     pub refused: u32,
 }
 
-impl Tally {
+impl LinkCounters {
     /// All that was not taken.
     pub fn lost(&self) -> u32 {
         [self.oversized, self.malformed, self.checksum, self.version, self.refused]
@@ -68,7 +68,7 @@ pub struct Receiver {
     used: usize,
     /// Bytes of the message behind the version, once a frame is whole.
     ready: Option<usize>,
-    tally: Tally,
+    link_counters: LinkCounters,
 }
 
 impl Default for Receiver {
@@ -80,8 +80,8 @@ impl Default for Receiver {
 impl Receiver {
     /// Nothing was heard yet.
     pub const fn new() -> Self {
-        let tally = Tally { frames: 0, oversized: 0, malformed: 0, checksum: 0, version: 0, refused: 0 };
-        Self { line: [0; LINE_BYTES], used: 0, ready: None, tally }
+        let link_counters = LinkCounters { frames: 0, oversized: 0, malformed: 0, checksum: 0, version: 0, refused: 0 };
+        Self { line: [0; LINE_BYTES], used: 0, ready: None, link_counters }
     }
 
     /// Takes a byte; whether a frame is whole with it, for [`Self::message`] until the next byte.
@@ -104,9 +104,9 @@ impl Receiver {
     }
 
     fn unpack(&mut self, used: usize) -> Option<usize> {
-        let tally = &mut self.tally;
+        let link_counters = &mut self.link_counters;
         if used >= LINE_BYTES {
-            tally.oversized = tally.oversized.saturating_add(1);
+            link_counters.oversized = link_counters.oversized.saturating_add(1);
             return None;
         }
         let frame = self.line.get_mut(..used).and_then(|line| {
@@ -114,18 +114,18 @@ impl Receiver {
             line.get(..length)
         });
         let Some((body, check)) = frame.and_then(|frame| frame.split_last_chunk::<CHECK>()) else {
-            tally.malformed = tally.malformed.saturating_add(1);
+            link_counters.malformed = link_counters.malformed.saturating_add(1);
             return None;
         };
         if CRC.checksum(body) != u32::from_le_bytes(*check) {
-            tally.checksum = tally.checksum.saturating_add(1);
+            link_counters.checksum = link_counters.checksum.saturating_add(1);
             return None;
         }
         if body.first() != Some(&VERSION) {
-            tally.version = tally.version.saturating_add(1);
+            link_counters.version = link_counters.version.saturating_add(1);
             return None;
         }
-        tally.frames = tally.frames.saturating_add(1);
+        link_counters.frames = link_counters.frames.saturating_add(1);
         body.len().checked_sub(1)
     }
 
@@ -138,11 +138,11 @@ impl Receiver {
 
     /// Counts the frame that is whole as one that may not be.
     pub fn refuse(&mut self) {
-        self.tally.refused = self.tally.refused.saturating_add(1);
+        self.link_counters.refused = self.link_counters.refused.saturating_add(1);
     }
 
     /// The counts.
-    pub fn tally(&self) -> Tally {
-        self.tally
+    pub fn link_counters(&self) -> LinkCounters {
+        self.link_counters
     }
 }

@@ -7,7 +7,7 @@ use crate::faults::Faults;
 bitflags::bitflags! {
     /// What went with the words of a tick.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-    pub struct Notes: u8 {
+    pub struct InputStatus: u8 {
         /// The encoder's bus did not answer.
         const NO_POSITION = 1;
         /// The converter's bus did not answer.
@@ -39,25 +39,25 @@ pub struct Input {
     /// Ticks since the input before: 1, or more where ticks were lost.
     pub elapsed: u8,
     /// What else happened.
-    pub notes: Notes,
+    pub status: InputStatus,
 }
 
 impl Input {
     /// Nothing was read.
-    pub const NOTHING: Self = Self { angle: 0, diagnostics: 0, force: 0, elapsed: 1, notes: Notes::NO_SAMPLE };
+    pub const NOTHING: Self = Self { angle: 0, diagnostics: 0, force: 0, elapsed: 1, status: InputStatus::NO_SAMPLE };
 
-    /// The faults that its notes tell of.
-    pub fn told(&self) -> Faults {
+    /// The faults that its status tell of.
+    pub fn faults(&self) -> Faults {
         let mut faults = Faults::empty();
         for (note, fault) in [
-            (Notes::NO_POSITION, Faults::POSITION_TIMEOUT),
-            (Notes::NO_FORCE, Faults::FORCE_TIMEOUT),
-            (Notes::NO_SAMPLE, Faults::SAMPLE_LOST),
-            (Notes::BROWN_OUT, Faults::BROWN_OUT),
-            (Notes::LINK_GONE, Faults::LINK_GONE),
-            (Notes::OVERRUN, Faults::OVERRUN),
+            (InputStatus::NO_POSITION, Faults::POSITION_TIMEOUT),
+            (InputStatus::NO_FORCE, Faults::FORCE_TIMEOUT),
+            (InputStatus::NO_SAMPLE, Faults::SAMPLE_LOST),
+            (InputStatus::BROWN_OUT, Faults::BROWN_OUT),
+            (InputStatus::LINK_GONE, Faults::LINK_GONE),
+            (InputStatus::OVERRUN, Faults::OVERRUN),
         ] {
-            faults.set(fault, self.notes.contains(note));
+            faults.set(fault, self.status.contains(note));
         }
         if self.elapsed > 1 { faults | Faults::SAMPLE_LOST } else { faults }
     }
@@ -65,13 +65,13 @@ impl Input {
 
 impl From<[u8; INPUT_BYTES]> for Input {
     fn from(bytes: [u8; INPUT_BYTES]) -> Self {
-        let [a0, a1, d0, d1, f0, f1, f2, f3, elapsed, notes] = bytes;
+        let [a0, a1, d0, d1, f0, f1, f2, f3, elapsed, status] = bytes;
         Self {
             angle: u16::from_le_bytes([a0, a1]),
             diagnostics: u16::from_le_bytes([d0, d1]),
             force: u32::from_le_bytes([f0, f1, f2, f3]),
             elapsed,
-            notes: Notes::from_bits_truncate(notes),
+            status: InputStatus::from_bits_truncate(status),
         }
     }
 }
@@ -80,6 +80,6 @@ impl From<Input> for [u8; INPUT_BYTES] {
     fn from(input: Input) -> Self {
         let ([a0, a1], [d0, d1]) = (input.angle.to_le_bytes(), input.diagnostics.to_le_bytes());
         let [f0, f1, f2, f3] = input.force.to_le_bytes();
-        [a0, a1, d0, d1, f0, f1, f2, f3, input.elapsed, input.notes.bits()]
+        [a0, a1, d0, d1, f0, f1, f2, f3, input.elapsed, input.status.bits()]
     }
 }

@@ -25,7 +25,7 @@ mod calibration;
 mod channel;
 mod counters;
 mod cycle;
-mod desk;
+mod decoder;
 mod effort;
 mod estimator;
 mod faults;
@@ -40,13 +40,13 @@ mod tare;
 pub use bus::{BoundedSpi, BusFault};
 pub use calibration::{CALIBRATION_BYTES, Calibration, CalibrationFault, PositionSensor, Scale};
 pub use counters::Counters;
-pub use cycle::{Cycle, Order, Report, Standing};
-pub use desk::{Desk, Wish};
+pub use cycle::{Cycle, Order, Report, Validity};
+pub use decoder::{DecodedRequest, RequestDecoder};
 pub use effort::{Bounds, effort, trusted};
-pub use estimator::{Choice, Estimator};
+pub use estimator::{Estimator, ValidatedSettings};
 pub use faults::Faults;
-pub use input::{INPUT_BYTES, Input, Notes};
-pub use quadrature::{Counter, Quadrature};
+pub use input::{INPUT_BYTES, Input, InputStatus};
+pub use quadrature::{EncoderCounter, Quadrature};
 pub use settings::Settings;
 
 /// Ticks of the interrupt in a second.

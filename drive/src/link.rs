@@ -6,9 +6,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::{Calibration, Scale};
-use crate::cycle::{Order, Report, Standing};
+use crate::cycle::{Order, Report, Validity};
 use crate::faults::Faults;
-use crate::framing::Tally;
+use crate::framing::LinkCounters;
 use crate::input::Input;
 use crate::settings::Settings;
 use palpate::Estimate;
@@ -83,7 +83,7 @@ pub enum Message<'a> {
         /// The request's number.
         number: u16,
         /// How it went.
-        outcome: Outcome,
+        outcome: RequestOutcome,
     },
     /// What the drive is.
     Identity(#[serde(borrow)] Identity<'a>),
@@ -102,16 +102,16 @@ pub enum Message<'a> {
         revision: u8,
     },
     /// How often what happened.
-    Counters(Count),
+    Counters(CountersMessage),
     /// An estimate.
-    Estimate(Told),
+    Estimate(EstimateMessage),
     /// A sample.
-    Sample(Seen),
+    Sample(SampleMessage),
 }
 
 /// How a request went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Outcome {
+pub enum RequestOutcome {
     /// It was done, or will be at the next tick.
     Done,
     /// Nothing was changed: a value is out of its range.
@@ -142,7 +142,7 @@ pub struct Identity<'a> {
 
 /// How often what happened.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Count {
+pub struct CountersMessage {
     /// Ticks at which each fault occurred, in the order of their bits.
     pub faults: [u32; Faults::COUNT],
     /// Ticks, samples used, times that the estimator began anew, tares refused.
@@ -150,7 +150,7 @@ pub struct Count {
     /// Reports that the idle loop had no time for.
     pub dropped: u32,
     /// Received bytes that the idle loop had no time for, or the line upset.
-    pub deaf: u32,
+    pub rx_overruns: u32,
     /// Inputs of the link that waited for none, and ticks that waited for an input.
     pub starved: u32,
     /// Least and most cycles of the core from the timer's zero to the interrupt's first look at it.
@@ -158,16 +158,16 @@ pub struct Count {
     /// Most cycles of the core from the timer's zero to the interrupt's end.
     pub longest: u32,
     /// What was heard on the link.
-    pub tally: Tally,
+    pub link_counters: LinkCounters,
 }
 
 /// An estimate as it is told.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Told {
+pub struct EstimateMessage {
     /// The tick.
     pub tick: u32,
     /// What it rests on.
-    pub standing: Standing,
+    pub validity: Validity,
     /// The bits of [`Faults`].
     pub faults: u32,
     /// The number of the settings.
@@ -186,7 +186,7 @@ pub struct Told {
 
 /// A sample as it is told.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Seen {
+pub struct SampleMessage {
     /// The tick.
     pub tick: u32,
     /// What went in.
@@ -197,13 +197,13 @@ pub struct Seen {
     pub restarted: bool,
 }
 
-impl Told {
+impl EstimateMessage {
     /// What is told of `report`.
     pub fn of(report: &Report) -> Self {
         let e = &report.estimate;
         Self {
             tick: report.tick,
-            standing: report.standing,
+            validity: report.validity,
             faults: report.faults.bits(),
             revision: report.revision,
             impedance: e.impedance,
@@ -233,7 +233,7 @@ impl Told {
     }
 }
 
-impl Seen {
+impl SampleMessage {
     /// What is told of `report`.
     pub fn of(report: &Report) -> Self {
         Self {

@@ -1,12 +1,12 @@
 //! A quadrature encoder on a timer: the other way to a position.
 
 /// A timer that counts both edges of both channels and wraps at 16 bits. (embedded-hal 1.0 has no trait for it.)
-pub trait Counter {
+pub trait EncoderCounter {
     /// The count.
     fn count(&mut self) -> u16;
 }
 
-impl<F: FnMut() -> u16> Counter for F {
+impl<F: FnMut() -> u16> EncoderCounter for F {
     fn count(&mut self) -> u16 {
         self()
     }
@@ -24,7 +24,7 @@ pub struct Quadrature {
 
 impl Quadrature {
     /// Takes a count, returns the counts since the first one.
-    pub fn follow(&mut self, count: u16) -> i32 {
+    pub fn update(&mut self, count: u16) -> i32 {
         let step = self.last.map_or(0, |last| count.wrapping_sub(last).cast_signed());
         self.last = Some(count);
         self.position = self.position.wrapping_add(i32::from(step));

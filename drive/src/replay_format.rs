@@ -1,12 +1,12 @@
 //! What the host and the bench image hand each other: two files, read and written by semihosting.
 //!
-//! In: the length of the settings (u32), the settings ([`BenchConfig`] by postcard), then 12 bytes a sample. Out: a record
-//! a sample (a status word, then 32 bytes for each method that runs), then [`Counters`]. All words little-endian, floats
+//! In: the length of the settings (u32), the settings ([`EstimatorBankConfig`] by postcard), then 12 bytes a sample. Out: a record
+//! a sample (a status word, then 32 bytes for each method that runs), then [`ReplayCounters`]. All words little-endian, floats
 //! as their bits, so nothing is lost on the way.
 
 use palpate::Estimate;
 use palpate::Flags;
-use palpate::{BenchConfig, BenchEstimates, Method, Methods};
+use palpate::{BankEstimates, EstimatorBankConfig, Method, Methods};
 use palpate::{Field, Rejection};
 use palpate::{Impedance, Sample};
 
@@ -28,11 +28,11 @@ const WORD: usize = 4;
 const ESTIMATE_BYTES: usize = 8 * WORD;
 
 /// What one update returned.
-pub type Outcome = Result<BenchEstimates, Rejection>;
+pub type UpdateResult = Result<BankEstimates, Rejection>;
 
 /// How the run went, seen from the interrupt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counters {
+pub struct ReplayCounters {
     /// Samples taken.
     pub samples: u32,
     /// Ticks of the 1 kHz timer.
@@ -44,7 +44,7 @@ pub struct Counters {
 }
 
 /// Encodes the settings, with their length before them, into `buffer`; the bytes used.
-pub fn encode_config<'a>(config: &BenchConfig, buffer: &'a mut [u8; CONFIG_BYTES + WORD]) -> Option<&'a [u8]> {
+pub fn encode_config<'a>(config: &EstimatorBankConfig, buffer: &'a mut [u8; CONFIG_BYTES + WORD]) -> Option<&'a [u8]> {
     let (length, body) = buffer.split_first_chunk_mut::<WORD>()?;
     let used = postcard::to_slice(config, body).ok()?.len();
     *length = u32::try_from(used).ok()?.to_le_bytes();
@@ -52,7 +52,7 @@ pub fn encode_config<'a>(config: &BenchConfig, buffer: &'a mut [u8; CONFIG_BYTES
 }
 
 /// Decodes the settings from their bytes, without the length.
-pub fn decode_config(bytes: &[u8]) -> Option<BenchConfig> {
+pub fn decode_config(bytes: &[u8]) -> Option<EstimatorBankConfig> {
     postcard::from_bytes(bytes).ok()
 }
 
@@ -82,7 +82,7 @@ pub fn record_bytes(methods: Methods) -> usize {
 }
 
 /// One outcome to its record; `record` is [`record_bytes`] long.
-pub fn encode_record(outcome: &Outcome, methods: Methods, record: &mut [u8]) {
+pub fn encode_record(outcome: &UpdateResult, methods: Methods, record: &mut [u8]) {
     let Some((status, rest)) = record.split_first_chunk_mut::<WORD>() else { return };
     *status = status_word(outcome).to_le_bytes();
     let Ok(estimates) = outcome else {
@@ -98,7 +98,7 @@ pub fn encode_record(outcome: &Outcome, methods: Methods, record: &mut [u8]) {
 }
 
 /// One outcome from its record; `None` where the bytes are none.
-pub fn decode_record(bytes: &[u8], methods: Methods) -> Option<Outcome> {
+pub fn decode_record(bytes: &[u8], methods: Methods) -> Option<UpdateResult> {
     let (status, rest) = bytes.split_first_chunk::<WORD>()?;
     if let Some(rejection) = rejection_of(u32::from_le_bytes(*status))? {
         return Some(Err(rejection));
@@ -113,7 +113,7 @@ pub fn decode_record(bytes: &[u8], methods: Methods) -> Option<Outcome> {
 }
 
 /// The counters to their bytes.
-pub fn encode_counters(c: &Counters) -> [u8; COUNTER_BYTES] {
+pub fn encode_counters(c: &ReplayCounters) -> [u8; COUNTER_BYTES] {
     let mut bytes = [0; COUNTER_BYTES];
     for (to, word) in bytes.chunks_exact_mut(WORD).zip([c.samples, c.ticks, c.overruns, c.starved]) {
         to.copy_from_slice(&word.to_le_bytes());
@@ -122,9 +122,9 @@ pub fn encode_counters(c: &Counters) -> [u8; COUNTER_BYTES] {
 }
 
 /// The counters from their bytes.
-pub fn decode_counters(bytes: &[u8; COUNTER_BYTES]) -> Option<Counters> {
+pub fn decode_counters(bytes: &[u8; COUNTER_BYTES]) -> Option<ReplayCounters> {
     let [samples, ticks, overruns, starved] = words::<4>(bytes)?;
-    Some(Counters { samples, ticks, overruns, starved })
+    Some(ReplayCounters { samples, ticks, overruns, starved })
 }
 
 fn words<const N: usize>(bytes: &[u8]) -> Option<[u32; N]> {
@@ -167,7 +167,7 @@ fn estimate_of(bytes: &[u8]) -> Option<Estimate> {
 const FIELDS: [Field; 3] = [Field::Position, Field::Force, Field::Elapsed];
 
 /// 0 for an estimate, 1 to 3 for a field that is not finite, 4 to 6 for one out of range.
-fn status_word(outcome: &Outcome) -> u32 {
+fn status_word(outcome: &UpdateResult) -> u32 {
     match outcome {
         Ok(_) => 0,
         Err(Rejection::NotFinite(field)) => 1 + *field as u32,

@@ -4,16 +4,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Calibration, TICK_HZ};
 use palpate::BlockConfig;
+use palpate::ContactDetectorConfig;
 use palpate::EwrlsConfig;
-use palpate::GateConfig;
 use palpate::GradientConfig;
 use palpate::ResetRlsConfig;
-use palpate::Sensors;
+use palpate::SensorResolution;
 use palpate::SprlsConfig;
 use palpate::Units;
 use palpate::error::{ConfigError, require};
-use palpate::{BenchConfig, Method, Methods};
 use palpate::{ContactLoss, StreamConfig};
+use palpate::{EstimatorBankConfig, Method, Methods};
 use palpate::{FrontEndConfig, Velocity};
 
 /// Settings of a drive.
@@ -68,12 +68,12 @@ impl Settings {
     ///
     /// # Errors
     /// A setting that is out of its limits here; the estimators have more.
-    pub fn bench(&self, calibration: &Calibration) -> Result<BenchConfig, ConfigError> {
+    pub fn bank_config(&self, calibration: &Calibration) -> Result<EstimatorBankConfig, ConfigError> {
         require((1.0..=400.0).contains(&self.cutoff), "cutoff", "1 to 400 Hz")?;
         require((1..=1_000).contains(&self.hold), "hold", "1 to 1000 ticks")?;
         let initial_covariance = self.initial_covariance;
         let covariance_limit = (100.0 * initial_covariance).clamp(1e6, 1e9);
-        Ok(BenchConfig {
+        Ok(EstimatorBankConfig {
             stream: self.stream(calibration),
             methods: Methods::default().with(self.method),
             rls: EwrlsConfig { initial_covariance, covariance_limit, ..EwrlsConfig::rls() },
@@ -98,10 +98,10 @@ impl Settings {
                 cutoff: self.cutoff,
                 velocity: self.velocity,
                 bilateral: false,
-                gate: gate(calibration),
+                contact_detector: contact_detector(calibration),
                 units: Units::SI,
             },
-            sensors: Sensors {
+            sensors: SensorResolution {
                 position_resolution: calibration.position_per_count().abs(),
                 force_noise: calibration.force_noise,
             },
@@ -113,7 +113,7 @@ impl Settings {
 
 /// Contact begins above two and a half standard deviations, and ends below a half. In double precision as the host tool does
 /// it, so that both have the same bits.
-fn gate(calibration: &Calibration) -> GateConfig {
+fn contact_detector(calibration: &Calibration) -> ContactDetectorConfig {
     let noise = f64::from(calibration.force_noise);
-    GateConfig { on_force: (2.5 * noise) as f32, off_force: (0.5 * noise) as f32, off_samples: 5 }
+    ContactDetectorConfig { on_force: (2.5 * noise) as f32, off_force: (0.5 * noise) as f32, off_samples: 5 }
 }

@@ -1,6 +1,6 @@
 //! The recording, read by semihosting into memory once.
 
-use palpate::{BenchConfig, Sample};
+use palpate::{EstimatorBankConfig, Sample};
 use palpate_drive::replay_format::{CONFIG_BYTES, SAMPLE_BYTES, decode_config, decode_sample};
 use semihosting::fs::File;
 use semihosting::io::Read;
@@ -14,7 +14,7 @@ const CAPACITY: usize = 6_000;
 /// Settings and samples.
 pub struct Recording {
     /// Settings of the stream and of all laws.
-    pub config: BenchConfig,
+    pub config: EstimatorBankConfig,
     /// The samples, in order.
     pub samples: &'static [Sample],
 }

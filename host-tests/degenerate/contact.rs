@@ -2,18 +2,18 @@
 
 use super::{K, excitation};
 use crate::rig;
-use palpate::{BenchEstimates, ContactLoss, Flags, Method, Sample, StreamConfig};
+use palpate::{BankEstimates, ContactLoss, Flags, Method, Sample, StreamConfig};
 
 /// The last estimates of a contact, those of the free space after it, and the first ones of the next.
-fn lost_and_found(contact_loss: ContactLoss) -> (BenchEstimates, Vec<BenchEstimates>, BenchEstimates) {
+fn lost_and_found(contact_loss: ContactLoss) -> (BankEstimates, Vec<BankEstimates>, BankEstimates) {
     let mut bench = rig::bench(StreamConfig { contact_loss, ..StreamConfig::BENCH });
-    let good = |outcomes: Vec<Result<BenchEstimates, _>>| -> Vec<BenchEstimates> {
+    let good = |outcomes: Vec<Result<BankEstimates, _>>| -> Vec<BankEstimates> {
         outcomes.into_iter().map(|outcome| outcome.expect("a good sample")).collect()
     };
     let before = good(rig::run(&mut bench, &excitation(3000).collect::<Vec<_>>()));
     let away = [Sample { position: -0.01, force: 0.01, elapsed: 1e-3 }; 200];
     let mut away = good(rig::run(&mut bench, &away));
-    // The gate takes five samples to believe it.
+    // The detector takes five samples to believe it.
     let left = away.split_off(4);
     let again = good(rig::run(&mut bench, &excitation(1).collect::<Vec<_>>()));
     (before[2999], left, again[0])

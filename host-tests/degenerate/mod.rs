@@ -6,7 +6,7 @@ mod still;
 mod time;
 mod window;
 
-use palpate::{BenchEstimates, Estimate, Flags, Method, Sample};
+use palpate::{BankEstimates, Estimate, Flags, Method, Sample};
 use std::f64::consts::TAU;
 
 const K: f64 = 300.0;
@@ -35,7 +35,7 @@ fn assert_readable(method: Method, e: &Estimate) {
 }
 
 #[track_caller]
-fn all_readable(estimates: &BenchEstimates) {
+fn all_readable(estimates: &BankEstimates) {
     for (method, estimate) in Method::ALL.iter().zip(estimates) {
         assert_readable(*method, estimate);
     }
@@ -43,7 +43,7 @@ fn all_readable(estimates: &BenchEstimates) {
 
 /// Fails unless every method but those `excused` has K within `bound` of the truth.
 #[track_caller]
-fn all_know_stiffness(estimates: &BenchEstimates, bound: f64, excused: &[Method]) {
+fn all_know_stiffness(estimates: &BankEstimates, bound: f64, excused: &[Method]) {
     for (method, e) in Method::ALL.iter().zip(estimates).filter(|(method, _)| !excused.contains(method)) {
         let error = (f64::from(e.impedance.stiffness) / K - 1.0).abs();
         assert!(error <= bound, "{}: K off by {error:.3} ({e:?})", method.name());

@@ -3,17 +3,19 @@
 use super::{B, K, all_know_stiffness, all_readable, excitation};
 use crate::rig;
 use crate::simulator::Noise;
-use palpate::{Bench, BlockConfig, BlockLeastSquares, Flags, FrontEndConfig, Identifier, Method, Sample, StreamConfig};
+use palpate::{
+    BlockConfig, BlockLeastSquares, EstimatorBank, Flags, FrontEndConfig, Identifier, Method, Sample, StreamConfig,
+};
 
 /// An hour at 1 kHz.
 const HOUR: usize = 3_600_000;
 
 /// A short window keeps the hour short; a held sample is the same to a long one.
-fn bench(stream: StreamConfig) -> Bench {
+fn bench(stream: StreamConfig) -> EstimatorBank {
     rig::bench_with(stream, BlockConfig::of(6))
 }
 
-fn feed(bench: &mut Bench, samples: impl Iterator<Item = Sample>) -> palpate::BenchEstimates {
+fn feed(bench: &mut EstimatorBank, samples: impl Iterator<Item = Sample>) -> palpate::BankEstimates {
     let mut last = None;
     for sample in samples {
         let estimates = bench.update(sample).expect("a good sample");

@@ -69,7 +69,7 @@ fn the_ends_of_the_range() {
     let mut end =
         || (10_f64.powf(24.0 * noise.uniform() - 18.0) * if noise.uniform() < 0.5 { -1.0 } else { 1.0 }) as f32;
     let mut wild: Vec<_> = (0..5000).map(|_| Observation { penetration: end(), rate: end(), force: end() }).collect();
-    let r = FrontEnd::RANGE;
+    let r = FrontEnd::MAX_MAGNITUDE;
     for signs in 0..8 {
         let [penetration, rate, force] = [0, 1, 2].map(|bit| if signs >> bit & 1 == 0 { r } else { -r });
         wild.extend([Observation { penetration, rate, force }; 50]);
@@ -81,7 +81,7 @@ fn the_ends_of_the_range() {
             assert!(step.estimate.is_finite() && !step.innovation.is_nan(), "{name}: {step:?} on {o:?}");
             let c = step.confidence;
             assert!(
-                !c.noise.xx.is_nan() && !c.noise_gain.xx.is_nan() && !c.remainder.stiffness.is_nan(),
+                !c.noise.xx.is_nan() && !c.noise_gain.xx.is_nan() && !c.startup_bias.stiffness.is_nan(),
                 "{name}: {c:?}"
             );
         }

@@ -1,7 +1,7 @@
 //! The line search of mean fourth has exactly one root, and the cubic keeps single precision.
 
 use super::runner;
-use crate::reference::{self, Row, Theta};
+use crate::reference::{self, RegressionRow, Theta};
 use crate::tolerance::close;
 use palpate::math::cubic::depressed_root;
 use palpate::{BlockConfig, Direction, Impedance, Observation, Recent, direct};
@@ -10,9 +10,9 @@ use proptest::collection::vec;
 const EPS: f64 = f32::EPSILON as f64;
 
 /// Coefficients of the derivative of `sum (e - t p)^4 / 4`, in double precision.
-fn coefficients(rows: &[Row], from: Theta, u: Theta) -> [f64; 4] {
+fn coefficients(rows: &[RegressionRow], from: Theta, u: Theta) -> [f64; 4] {
     rows.iter().fold([0.0; 4], |[a, b, c, d], row| {
-        let (p, e) = (row.regressor().dot(&u), row.misfit(from));
+        let (p, e) = (row.regressor().dot(&u), row.residual(from));
         [a + p.powi(4), b - 3.0 * p.powi(3) * e, c + 3.0 * p * p * e * e, d - p * e.powi(3)]
     })
 }
@@ -35,20 +35,20 @@ fn the_line_search_goes_down_and_has_exactly_one_real_root() {
             let u = reference::theta(found.direction);
             close("length of u", u.norm(), 1.0, 4.0 * EPS, 0.0);
 
-            let largest = |size: &dyn Fn(&Row) -> f64| rows.iter().map(|r| size(r).abs()).fold(0.0, f64::max);
-            let misfit = largest(&|r| r.misfit(from));
+            let largest = |size: &dyn Fn(&RegressionRow) -> f64| rows.iter().map(|r| size(r).abs()).fold(0.0, f64::max);
+            let residual = largest(&|r| r.residual(from));
             let reach = u.x.abs() * largest(&|r| r.x) + u.y.abs() * largest(&|r| r.v);
-            let gradient: Theta = rows.iter().map(|r| r.regressor() * r.misfit(from).powi(3)).sum();
+            let gradient: Theta = rows.iter().map(|r| r.regressor() * r.residual(from).powi(3)).sum();
             let [a, b, c, d] = coefficients(&rows, from, u);
             // u is minus the gradient over its length, so D is minus that length: it is known to the rounding of the
-            // terms that cancel in it, each at most reach times the cube of the largest misfit.
-            let terms = rows.len() as f64 * reach * misfit.powi(3);
+            // terms that cancel in it, each at most reach times the cube of the largest residual.
+            let terms = rows.len() as f64 * reach * residual.powi(3);
             close("D in double", d, -gradient.norm(), 1e-6, 8.0 * EPS * terms);
-            close("D", f64::from(found.d) * reach * misfit.powi(3), d, 1e-5, 8.0 * EPS * terms);
+            close("D", f64::from(found.d) * reach * residual.powi(3), d, 1e-5, 8.0 * EPS * terms);
             close("A", f64::from(found.a) * reach.powi(4), a, 1e-4, 0.0);
-            let terms = rows.len() as f64 * reach.powi(3) * misfit;
-            close("B", f64::from(found.b) * reach.powi(3) * misfit, b, 1e-5, 24.0 * EPS * terms);
-            close("C", f64::from(found.c) * (reach * misfit).powi(2), c, 1e-4, 0.0);
+            let terms = rows.len() as f64 * reach.powi(3) * residual;
+            close("B", f64::from(found.b) * reach.powi(3) * residual, b, 1e-5, 24.0 * EPS * terms);
+            close("C", f64::from(found.c) * (reach * residual).powi(2), c, 1e-4, 0.0);
 
             // J'' = 3 A t^2 + 2 B t + C has no real zero, so J' has one.
             assert!(b * b <= 3.0 * a * c * (1.0 + 1e-12), "J'' has two zeros: {a} {b} {c}");
@@ -56,7 +56,7 @@ fn the_line_search_goes_down_and_has_exactly_one_real_root() {
                 - 4.0 * a * c.powi(3)
                 - 27.0 * (a * d).powi(2);
             assert!(roots <= 0.0, "a discriminant of {roots}: three real roots");
-            let cost = |t: f64| rows.iter().map(|r| r.misfit(from + u * t).powi(4)).sum::<f64>();
+            let cost = |t: f64| rows.iter().map(|r| r.residual(from + u * t).powi(4)).sum::<f64>();
             let length = f64::from(found.length);
             assert!(length > 0.0, "the way down is forward, not {length}");
             assert!(cost(length) <= cost(0.0) * (1.0 + 1e-12), "{} from {}", cost(length), cost(0.0));

@@ -2,7 +2,9 @@
 
 use crate::rig;
 use crate::simulator::Trial;
-use palpate::{FrontEndConfig, GateConfig, Method, Observation, Sample, Sensors, StreamConfig, Units};
+use palpate::{
+    ContactDetectorConfig, FrontEndConfig, Method, Observation, Sample, SensorResolution, StreamConfig, Units,
+};
 
 fn bench_samples(seed: u64) -> Vec<Sample> {
     Trial { seconds: 2.5, ..Trial::bench("K 300, B 5", |_| (300.0, 5.0)) }.samples(seed)
@@ -18,11 +20,15 @@ fn scaled(samples: &[Sample], length: f64, force: f64) -> Vec<Sample> {
 }
 
 fn stream(units: Units, length: f32, force: f32) -> StreamConfig {
-    let (bench, gate) = (StreamConfig::BENCH, GateConfig::BENCH);
-    let gate = GateConfig { on_force: gate.on_force * force, off_force: gate.off_force * force, ..gate };
+    let (bench, contact_detector) = (StreamConfig::BENCH, ContactDetectorConfig::BENCH);
+    let contact_detector = ContactDetectorConfig {
+        on_force: contact_detector.on_force * force,
+        off_force: contact_detector.off_force * force,
+        ..contact_detector
+    };
     StreamConfig {
-        front_end: FrontEndConfig { units, gate, ..FrontEndConfig::BENCH },
-        sensors: Sensors {
+        front_end: FrontEndConfig { units, contact_detector, ..FrontEndConfig::BENCH },
+        sensors: SensorResolution {
             position_resolution: bench.sensors.position_resolution * length,
             force_noise: bench.sensors.force_noise * force,
         },
@@ -61,7 +67,7 @@ fn powers_of_two_change_no_bit_but_the_exponent() {
 #[test]
 fn nanonewtons_and_tens_of_kilonewtons_are_identified_as_well_as_newtons() {
     let samples = bench_samples(4);
-    // Bench: 13.5 mm and 4 N. Micrometres and nanonewtons; metres and tens of kilonewtons.
+    // EstimatorBank: 13.5 mm and 4 N. Micrometres and nanonewtons; metres and tens of kilonewtons.
     for (length, force) in [(1e-6 / 0.0135, 1e-9 / 4.0), (1.0 / 0.0135, 1e4 / 4.0)] {
         let bench = Units::BENCH_RANGE;
         let units = Units::for_range(Observation {

@@ -7,8 +7,8 @@ use crate::simulator::Trial;
 use crate::tolerance::close;
 use nalgebra::Matrix2;
 use palpate::{
-    BlockConfig, BlockLeastSquares, Covariance, Ewrls, EwrlsConfig, Flags, FrontEnd, Law, Observation, Recent,
-    RecursiveState, Sample, Sprls, SprlsConfig, StreamConfig, Sym2,
+    BlockConfig, BlockLeastSquares, Covariance, Ewrls, EwrlsConfig, Flags, FrontEnd, Observation, Recent,
+    RecursiveState, Sample, Sprls, SprlsConfig, StreamConfig, Sym2, UpdateLaw,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -41,7 +41,7 @@ fn the_covariance_of_forgetting_is_always_a_covariance() {
             let config =
                 EwrlsConfig { forgetting_factor, initial_covariance, covariance_limit: initial_covariance.max(1e6) };
             let law = Ewrls::new(config).expect("sound settings");
-            let mut state = law.start();
+            let mut state = law.initial_state();
             for o in &observations {
                 law.update(&mut state, Recent::of(std::slice::from_ref(o)));
                 assert_covariance(state.covariance.matrix());
@@ -64,7 +64,7 @@ fn the_covariance_of_self_perturbation_is_always_a_covariance() {
                 covariance_limit: 1e9,
             };
             let law = Sprls::new(config).expect("sound settings");
-            let mut state = law.start();
+            let mut state = law.initial_state();
             for o in &observations {
                 law.update(&mut state, Recent::of(std::slice::from_ref(o)));
                 assert_covariance(state.recursion.covariance.matrix());
@@ -84,13 +84,14 @@ fn the_covariance_is_the_inverse_of_the_information() {
             let size = 10_f32.powf(log);
             let mut covariance = Covariance::identity(size);
             let mut information = Matrix2::identity() / f64::from(size);
-            for (penetration, rate, kick) in steps {
+            for (penetration, rate, perturbation) in steps {
                 covariance.observe(&Observation { penetration, rate, force: 0.0 }, forgetting);
                 let phi = nalgebra::Vector2::new(f64::from(penetration), f64::from(rate));
                 information = information * f64::from(forgetting) + phi * phi.transpose();
-                if kick > 3.0 {
-                    covariance.inflate(kick);
-                    let kicked = information.try_inverse().expect("definite") + Matrix2::identity() * f64::from(kick);
+                if perturbation > 3.0 {
+                    covariance.inflate(perturbation);
+                    let kicked =
+                        information.try_inverse().expect("definite") + Matrix2::identity() * f64::from(perturbation);
                     information = kicked.try_inverse().expect("definite");
                 }
             }
@@ -118,7 +119,7 @@ fn a_window_that_went_round_equals_a_fresh_start_on_its_samples() {
             });
             let observations: Vec<_> = observations.by_ref().collect();
             let law = BlockLeastSquares::new(BlockConfig::of(window as u16)).expect("sound settings");
-            let (mut long, mut fresh) = (law.start(), law.start());
+            let (mut long, mut fresh) = (law.initial_state(), law.initial_state());
             for k in 0..observations.len() {
                 law.update(&mut long, Recent::of(&observations[..=k]));
             }
@@ -160,7 +161,7 @@ fn all_weathers() -> Vec<Observation> {
         Observation { penetration: x as f32, rate: v as f32, force: (jumped * x + 5.0 * v) as f32 }
     });
     let held = (0..9000).map(|_| Observation { penetration: 5e-3, rate: 0.0, force: 1.5 });
-    let range = FrontEnd::RANGE;
+    let range = FrontEnd::MAX_MAGNITUDE;
     let far = [(range, -range, range), (-range, range, range), (range, range, -range), (0.0, 0.0, range)];
     let near = [(1e-20, 1e-20, 1e-20), (0.0, 1e-30, 0.0), (1e-30, 0.0, range)];
     let ends = far.into_iter().chain(near).cycle().take(700);
@@ -171,13 +172,13 @@ fn all_weathers() -> Vec<Observation> {
 #[test]
 fn learning_alone_comes_to_the_bits_of_an_update() {
     let (ewrls, sprls) = (Ewrls::new(EwrlsConfig::default()).unwrap(), Sprls::new(SprlsConfig::default()).unwrap());
-    let (mut e, mut s) = ([ewrls.start(); 2], [sprls.start(); 2]);
+    let (mut e, mut s) = ([ewrls.initial_state(); 2], [sprls.initial_state(); 2]);
     let mut limited = 0;
     for (k, o) in all_weathers().iter().enumerate() {
         let recent = Recent::of(std::slice::from_ref(o));
-        ewrls.learn(&mut e[0], o);
+        ewrls.update_estimate(&mut e[0], o);
         limited += usize::from(ewrls.update(&mut e[1], recent).flags.intersects(Flags::LIMITED | Flags::RESET));
-        sprls.learn(&mut s[0], o);
+        sprls.update_estimate(&mut s[0], o);
         sprls.update(&mut s[1], recent);
         let bits = |r: &RecursiveState| (r.estimate.stiffness.to_bits(), r.estimate.damping.to_bits(), r.covariance);
         assert_eq!(bits(&e[0]), bits(&e[1]), "ewrls at {k}: {o:?}");

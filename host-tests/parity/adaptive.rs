@@ -4,7 +4,7 @@ use super::{EPS, Parity, on_all, rounding};
 use crate::reference::{self, Cusum, Directional, Theta};
 use palpate::{
     AdaptiveWindow, AdaptiveWindowConfig, BlockConfig, BlockLeastSquares, CusumRls, CusumRlsConfig, DirectionalRls,
-    DirectionalRlsConfig, Flags, Impedance, Law, Observation, Prior, Recent,
+    DirectionalRlsConfig, Flags, Impedance, Observation, Prior, Recent, UpdateLaw,
 };
 
 const EVERY: usize = 17;
@@ -30,7 +30,7 @@ fn what_begins_again_is_the_batch_since_the_change_about_the_estimate_before_it(
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);
-            let (mut state, mut begin, mut at) = (law.start(), 0, Theta::zeros());
+            let (mut state, mut begin, mut at) = (law.initial_state(), 0, Theta::zeros());
             let (mut checkpoints, mut limited) = (Vec::new(), false);
             let mut sum = Cusum::default();
             for k in 0..contact.len() {
@@ -69,7 +69,7 @@ fn shrinking(name: &'static str, config: AdaptiveWindowConfig) {
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);
-            let (mut state, mut length, mut checkpoints) = (law.start(), 0, Vec::new());
+            let (mut state, mut length, mut checkpoints) = (law.initial_state(), 0, Vec::new());
             for k in 0..contact.len() {
                 let step = law.update(&mut state, Recent::of(&contact[..=k]));
                 let changed = step.flags.contains(Flags::CHANGED);
@@ -103,7 +103,7 @@ fn a_ridge_is_the_batch_with_two_more_rows_from_the_second_sample_on() {
             Observation { penetration: x, rate: v, force: 300.0 * x + 5.0 * v }
         })
         .collect();
-    let mut state = law.start();
+    let mut state = law.initial_state();
     for k in 0..contact.len() {
         let got = reference::theta(law.update(&mut state, Recent::of(&contact[..=k])).estimate);
         if k == 0 {
@@ -129,7 +129,8 @@ fn directional_forgetting_by_its_covariance() {
         for contact in
             &super::Case::new(trial.name.to_owned(), trial.samples(1), palpate::FrontEndConfig::BENCH).contacts
         {
-            let (mut state, mut double) = (law.start(), Directional::new(config.forgetting_factor.into(), variances));
+            let (mut state, mut double) =
+                (law.initial_state(), Directional::new(config.forgetting_factor.into(), variances));
             for (k, o) in contact.iter().enumerate() {
                 law.update(&mut state, Recent::of(std::slice::from_ref(o)));
                 double.update((*o).into());

@@ -2,11 +2,11 @@
 
 use super::{Parity, on_all, rounding, rounding_of_stiffness, silent_about_damping};
 use crate::reference::{self, Theta};
-use palpate::{BlockConfig, BlockLeastSquares, Flags, Law, Recent, direct};
+use palpate::{BlockConfig, BlockLeastSquares, Flags, Recent, UpdateLaw, direct};
 
 const EVERY: usize = 11;
 
-/// Multiples of what rounding may do to a window. Sums about a centre that is not the estimate itself lose one
+/// Multiples of what rounding may do to a window. SecondOrderSums about a centre that is not the estimate itself lose one
 /// bit more than a window that is summed anew about the estimate.
 const ANEW: f64 = 4.0;
 const RUNNING: f64 = 8.0;
@@ -19,14 +19,14 @@ fn summed_anew(name: &'static str, window: u16, flat: [f64; 2]) {
     agrees(name, &direct::BlockLeastSquares::new(BlockConfig::of(window)).expect("sound settings"), flat, ANEW);
 }
 
-fn agrees(name: &'static str, law: &impl Law, flat: [f64; 2], growth: f64) {
+fn agrees(name: &'static str, law: &impl UpdateLaw, flat: [f64; 2], growth: f64) {
     let window = law.window();
     on_all(
         |_| Parity::new(name, flat, growth),
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);
-            let mut state = law.start();
+            let mut state = law.initial_state();
             let mut checkpoints = Vec::new();
             let mut damping = 0.0;
             for k in 0..contact.len() {

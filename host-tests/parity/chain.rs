@@ -1,7 +1,7 @@
 //! The front end, and the whole way from samples to the estimate.
 
 use super::{Case, EPS, Parity};
-use crate::reference::{self, Row};
+use crate::reference::{self, RegressionRow};
 use crate::rig;
 use crate::tolerance::Ledger;
 use palpate::{
@@ -10,12 +10,12 @@ use palpate::{
 };
 
 /// The textbook front end on all samples, in SI.
-fn textbook(case: &Case, velocity: Velocity) -> Vec<Row> {
+fn textbook(case: &Case, velocity: Velocity) -> Vec<RegressionRow> {
     let mut front_end = reference::FrontEnd::new(&FrontEndConfig { velocity, ..case.front_end });
     case.samples.iter().map(|sample| front_end.update(sample)).collect()
 }
 
-fn largest(rows: &[Row], pick: fn(&Row) -> f64) -> f64 {
+fn largest(rows: &[RegressionRow], pick: fn(&RegressionRow) -> f64) -> f64 {
     rows.iter().map(|row| pick(row).abs()).fold(0.0, f64::max)
 }
 

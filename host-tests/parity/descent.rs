@@ -1,19 +1,19 @@
 //! Descent laws, each step from the library's own estimate before it: left to itself the way down is chaotic.
 
 use super::{Parity, on_all, rounding, silent_about_damping};
-use crate::reference::{self, Row, Theta};
+use crate::reference::{self, RegressionRow, Theta};
 use nalgebra::Vector2;
 use palpate::{
-    BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, Direction, Flags, Impedance, Law, Recent, direct,
+    BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, Direction, Flags, Impedance, Recent, UpdateLaw, direct,
 };
 
 const EVERY: usize = 23;
 const WINDOW: usize = 300;
 
 /// How a law keeps its sums: from which sample of a contact on they are compared, and by how much more they may lose than
-/// a window that is summed anew. Running sums are about a rough centre at the start of a contact: some forty samples where it
-/// is dithered, a hundred and fifty where a recorded swing dies away. A power of a misfit loses as that power of the ratio
-/// of the misfits about the two; until then a step is good to about a percent. In a
+/// a window that is summed anew. CompensatedSums sums are about a rough centre at the start of a contact: some forty samples where it
+/// is dithered, a hundred and fifty where a recorded swing dies away. A power of a residual loses as that power of the ratio
+/// of the residuals about the two; until then a step is good to about a percent. In a
 /// recorded creep next to nothing tells B from K, and a step along Newton's direction shares that.
 struct Kept {
     young: usize,
@@ -24,16 +24,16 @@ struct Kept {
 const ANEW: Kept = Kept { young: 0, simulated: 1.0, recorded: 1.0 };
 const RUNNING: Kept = Kept { young: 150, simulated: 64.0, recorded: 4096.0 };
 
-type Step = fn(&[Row], Theta) -> (Vector2<f64>, i32);
+type Step = fn(&[RegressionRow], Theta) -> (Vector2<f64>, i32);
 
 /// Each step of `law` against a numeric minimisation along the direction that `direction` gives.
-fn step_by_step<L: Law>(name: &'static str, law: &L, direction: Step, flat: [f64; 2], growth: f64, kept: Kept) {
+fn step_by_step<L: UpdateLaw>(name: &'static str, law: &L, direction: Step, flat: [f64; 2], growth: f64, kept: Kept) {
     on_all(
         |kind| Parity::new(name, flat, growth * if kind == "simulated" { kept.simulated } else { kept.recorded }),
         EVERY,
         |parity, case, contact| {
             let rows = reference::rows(contact);
-            let mut state = law.start();
+            let mut state = law.initial_state();
             let mut checkpoints = Vec::new();
             let mut estimate = Impedance::ZERO;
             for k in 0..contact.len() {
@@ -107,7 +107,7 @@ fn newton_steps_on_one_window_end_at_its_whole_minimum() {
                 if silent_about_damping(&rows[first..=k]) {
                     continue;
                 }
-                let mut state = law.start();
+                let mut state = law.initial_state();
                 for _ in 0..60 {
                     law.update(&mut state, Recent::of(&contact[first..=k]));
                 }

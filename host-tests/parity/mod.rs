@@ -12,7 +12,7 @@ mod descent;
 mod recursive;
 
 use crate::recordings;
-use crate::reference::{self, Row, Theta};
+use crate::reference::{self, RegressionRow, Theta};
 use crate::simulator::Trial;
 use crate::tolerance::Ledger;
 use palpate::{FrontEnd, FrontEndConfig, FrontEndState, Impedance, Observation, Sample};
@@ -61,21 +61,23 @@ impl Case {
 }
 
 /// How far rounding may move K and B over `rows`.
-fn rounding(rows: &[Row]) -> Theta {
-    let rms = |pick: fn(&Row) -> f64| (rows.iter().map(|r| pick(r).powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
+fn rounding(rows: &[RegressionRow]) -> Theta {
+    let rms = |pick: fn(&RegressionRow) -> f64| {
+        (rows.iter().map(|r| pick(r).powi(2)).sum::<f64>() / rows.len() as f64).sqrt()
+    };
     let rho = reference::independence(rows);
     Theta::new(1.0 / rms(|r| r.x), 1.0 / rms(|r| r.v)) * (EPS * rms(|r| r.force) / rho)
 }
 
 /// The same where K alone is solved for, and B is what it was.
-fn rounding_of_stiffness(rows: &[Row]) -> Theta {
-    let sum = |pick: fn(&Row) -> f64| rows.iter().map(|r| pick(r).powi(2)).sum::<f64>();
+fn rounding_of_stiffness(rows: &[RegressionRow]) -> Theta {
+    let sum = |pick: fn(&RegressionRow) -> f64| rows.iter().map(|r| pick(r).powi(2)).sum::<f64>();
     Theta::new(EPS * (sum(|r| r.force) / sum(|r| r.x)).sqrt(), f64::MIN_POSITIVE)
 }
 
 /// Columns in line up to the library's default floor; or a rate below the library's default floor, less than a thousandth
 /// of the bench's full scale, which is what is left in the filter of a tool that stands.
-fn silent_about_damping(rows: &[Row]) -> bool {
+fn silent_about_damping(rows: &[RegressionRow]) -> bool {
     let energy = rows.iter().map(|row| row.v * row.v).sum::<f64>() / rows.len() as f64;
     energy.sqrt() < 1.1e-4 || reference::independence(rows) < 1.1e-4
 }

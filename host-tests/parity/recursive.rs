@@ -3,8 +3,8 @@
 use super::{EPS, Parity, on_all, rounding};
 use crate::reference::{self, Prior, SelfPerturbing, Theta};
 use palpate::{
-    Ewrls, EwrlsConfig, Gradient, GradientConfig, Impedance, Law, Observation, Recent, ResetRls, ResetRlsConfig, Sprls,
-    SprlsConfig,
+    Ewrls, EwrlsConfig, Gradient, GradientConfig, Impedance, Observation, Recent, ResetRls, ResetRlsConfig, Sprls,
+    SprlsConfig, UpdateLaw,
 };
 
 /// Observations from one comparison to the next; no divisor of the dither's period.
@@ -14,14 +14,14 @@ const EVERY: usize = 37;
 const NO_LIMIT: f32 = 1e9;
 
 /// Recursive laws against `batch`, which is given all rows so far and the number of rows of the memory.
-fn recursive<L: Law>(
+fn recursive<L: UpdateLaw>(
     law: &L,
     estimate: impl Fn(&L::State) -> Impedance,
     contact: &[Observation],
     mut reference: impl FnMut(usize) -> Theta,
 ) -> Vec<(Impedance, Theta, Theta)> {
     let rows = reference::rows(contact);
-    let mut state = law.start();
+    let mut state = law.initial_state();
     let mut checkpoints = Vec::new();
     for k in 0..contact.len() {
         law.update(&mut state, Recent::of(&contact[k..=k]));
@@ -68,7 +68,7 @@ fn without_its_start_it_is_the_weighted_batch_alone() {
         for contact in
             &super::Case::new(trial.name.to_owned(), trial.samples(1), palpate::FrontEndConfig::BENCH).contacts
         {
-            let (rows, mut state, mut far) = (reference::rows(contact), law.start(), 0.0_f64);
+            let (rows, mut state, mut far) = (reference::rows(contact), law.initial_state(), 0.0_f64);
             assert_eq!(state.without_start(), None, "nothing has been told");
             for k in 0..contact.len() {
                 law.update(&mut state, Recent::of(&contact[k..=k]));
@@ -129,10 +129,10 @@ fn self_perturbation_in_information_form() {
                 config.perturbation_gain.into(),
                 config.perturbation_sensitivity.into(),
             );
-            let mut state = law.start();
+            let mut state = law.initial_state();
             let mut checkpoints = Vec::new();
             for k in 0..contact.len() {
-                let library = law.kick(state.innovation_before) / config.perturbation_gain;
+                let library = law.perturbation(state.innovation_before) / config.perturbation_gain;
                 let level = batch.level();
                 // The innovation itself is known to some roundings of the force, the level to twice that over it.
                 let blur = 1e-4_f64.max(64.0 * EPS * level.sqrt() * rows[k.saturating_sub(1)].force.abs());

@@ -1,7 +1,7 @@
 //! What adapts by itself, in double precision: another form of the cumulative sum, least squares with any prior and any number of
 //! columns, directional forgetting by its covariance.
 
-use super::{Row, Theta};
+use super::{RegressionRow, Theta};
 use nalgebra::{DMatrix, DVector, Matrix2};
 
 /// Page's sum as the rise of a random walk above its least value so far, which needs no maximum with zero.
@@ -55,7 +55,7 @@ pub fn ridged(rows: &[(Vec<f64>, f64)], lambda: f64, at: &[f64], ridge: &[f64]) 
 }
 
 /// Rows of two columns.
-pub fn columns(rows: &[Row]) -> Vec<(Vec<f64>, f64)> {
+pub fn columns(rows: &[RegressionRow]) -> Vec<(Vec<f64>, f64)> {
     rows.iter().map(|row| (vec![row.x, row.v], row.force)).collect()
 }
 
@@ -72,14 +72,14 @@ impl Directional {
         Self { estimate: Theta::zeros(), covariance: Matrix2::from_diagonal(&variances), lambda }
     }
 
-    pub fn update(&mut self, row: Row) {
+    pub fn update(&mut self, row: RegressionRow) {
         let phi = row.regressor();
         let known = phi.dot(&self.covariance.lu().solve(&phi).expect("a covariance"));
         if known > 0.0 {
             self.covariance += phi * phi.transpose() * ((1.0 - self.lambda) / (self.lambda * known));
         }
         let gain = self.covariance * phi / (1.0 + phi.dot(&(self.covariance * phi)));
-        self.estimate += gain * row.misfit(self.estimate);
+        self.estimate += gain * row.residual(self.estimate);
         self.covariance -= gain * (phi.transpose() * self.covariance);
         self.covariance = 0.5 * (self.covariance + self.covariance.transpose());
     }

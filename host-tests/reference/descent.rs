@@ -1,6 +1,6 @@
 //! Descent over a window: the step by numeric minimisation along the line, the whole minimum by its certificate.
 
-use super::{Row, Theta, least_squares};
+use super::{RegressionRow, Theta, least_squares};
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::brent::{BrentOpt, BrentRoot};
 use nalgebra::{Matrix2, Vector2};
@@ -47,8 +47,8 @@ impl CostFunction for Slope {
 ///
 /// Brent's minimiser finds it to about the root of the double's resolution; Brent's root finder on the slope then
 /// finds the rest, and the two must agree.
-pub fn line_minimum(rows: &[Row], from: Theta, direction: Vector2<f64>, power: i32) -> f64 {
-    let terms: Vec<_> = rows.iter().map(|r| (r.regressor().dot(&direction), r.misfit(from))).collect();
+pub fn line_minimum(rows: &[RegressionRow], from: Theta, direction: Vector2<f64>, power: i32) -> f64 {
+    let terms: Vec<_> = rows.iter().map(|r| (r.regressor().dot(&direction), r.residual(from))).collect();
     let size = |pick: fn(&(f64, f64)) -> f64| terms.iter().map(|t| pick(t).powi(2)).sum::<f64>().sqrt();
     let mut line = Line { span: size(|t| t.1) / size(|t| t.0), terms, power };
     while line.slope(1.0) < 0.0 {
@@ -70,12 +70,12 @@ pub fn line_minimum(rows: &[Row], from: Theta, direction: Vector2<f64>, power: i
 }
 
 /// The unit vector against the gradient of `sum |e|^power`.
-pub fn steepest_direction(rows: &[Row], from: Theta, power: i32) -> Vector2<f64> {
+pub fn steepest_direction(rows: &[RegressionRow], from: Theta, power: i32) -> Vector2<f64> {
     gradient(rows, from, power).normalize()
 }
 
 /// The unit vector along the Newton step of `sum e^4`.
-pub fn newton_direction(rows: &[Row], from: Theta) -> Vector2<f64> {
+pub fn newton_direction(rows: &[RegressionRow], from: Theta) -> Vector2<f64> {
     let descent = gradient(rows, from, 4);
     hessian(rows, from).svd(true, true).solve(&descent, 0.0).expect("a solution").normalize()
 }
@@ -83,9 +83,9 @@ pub fn newton_direction(rows: &[Row], from: Theta) -> Vector2<f64> {
 /// The minimiser of `sum e^4`: damped Newton steps, believed for the gradient that they end with and not for the way.
 ///
 /// The sum is convex, so a point without gradient is the minimum however it was come by.
-pub fn whole_minimum(rows: &[Row]) -> Theta {
+pub fn whole_minimum(rows: &[RegressionRow]) -> Theta {
     let mut at = least_squares(rows);
-    let cost = |theta: Theta| rows.iter().map(|r| r.misfit(theta).powi(4)).sum::<f64>();
+    let cost = |theta: Theta| rows.iter().map(|r| r.residual(theta).powi(4)).sum::<f64>();
     let newton = |theta: Theta| hessian(rows, theta).lu().solve(&gradient(rows, theta, 4)).expect("a solution") / 3.0;
     for _ in 0..40 {
         let step = newton(at);
@@ -96,17 +96,17 @@ pub fn whole_minimum(rows: &[Row]) -> Theta {
     for _ in 0..6 {
         at += newton(at);
     }
-    let unsigned: Vector2<f64> = rows.iter().map(|r| r.regressor().abs() * r.misfit(at).abs().powi(3)).sum();
+    let unsigned: Vector2<f64> = rows.iter().map(|r| r.regressor().abs() * r.residual(at).abs().powi(3)).sum();
     let left = gradient(rows, at, 4).component_div(&unsigned).amax();
     assert!(left < 1e-8, "a gradient of {left} of its terms is left at the minimum");
     at
 }
 
 /// `sum phi e^(power - 1)`: downhill.
-fn gradient(rows: &[Row], from: Theta, power: i32) -> Vector2<f64> {
-    rows.iter().map(|r| r.regressor() * r.misfit(from).powi(power - 1)).sum()
+fn gradient(rows: &[RegressionRow], from: Theta, power: i32) -> Vector2<f64> {
+    rows.iter().map(|r| r.regressor() * r.residual(from).powi(power - 1)).sum()
 }
 
-fn hessian(rows: &[Row], from: Theta) -> Matrix2<f64> {
-    rows.iter().map(|r| r.regressor() * r.regressor().transpose() * r.misfit(from).powi(2)).sum()
+fn hessian(rows: &[RegressionRow], from: Theta) -> Matrix2<f64> {
+    rows.iter().map(|r| r.regressor() * r.regressor().transpose() * r.residual(from).powi(2)).sum()
 }

@@ -1,6 +1,6 @@
 //! The front end by the textbook: bilinear transform with the exact tangent, direct form II transposed.
 
-use super::Row;
+use super::RegressionRow;
 use palpate::Sample;
 use std::f64::consts::{PI, SQRT_2};
 
@@ -67,12 +67,12 @@ impl FrontEnd {
     }
 
     /// One sample, in SI.
-    pub fn update(&mut self, sample: &Sample) -> Row {
+    pub fn update(&mut self, sample: &Sample) -> RegressionRow {
         let position = f64::from(sample.position) - self.surface;
         let (depth, force) = (position.max(0.0), f64::from(sample.force));
         let filter = self.filter;
         let Some(before) = self.before.replace(Reading { position, depth, force }) else {
-            return Row { x: depth, v: 0.0, force };
+            return RegressionRow { x: depth, v: 0.0, force };
         };
         let way = if self.matched { depth - before.depth } else { position - before.position };
         let inputs = [0.5 * (depth + before.depth), way / self.period, 0.5 * (force + before.force)];
@@ -83,6 +83,6 @@ impl FrontEnd {
         for ((output, memory), input) in [&mut x, &mut v, &mut f].into_iter().zip(&mut self.memories).zip(inputs) {
             *output = filter.filter(memory, input);
         }
-        if self.matched { Row { x, v, force: f } } else { Row { x: depth, v, force } }
+        if self.matched { RegressionRow { x, v, force: f } } else { RegressionRow { x: depth, v, force } }
     }
 }

@@ -1,6 +1,6 @@
 //! Least squares over all rows at once by QR: no recursion, no normal equations, no 2x2 inverse.
 
-use super::{Row, Theta};
+use super::{RegressionRow, Theta};
 use nalgebra::{DMatrix, DVector, Vector2};
 
 /// What is believed before the first row: `at`, with `covariance` times the identity.
@@ -11,12 +11,12 @@ pub struct Prior {
 }
 
 /// The minimiser of `sum (force - phi'theta)^2`.
-pub fn least_squares(rows: &[Row]) -> Theta {
+pub fn least_squares(rows: &[RegressionRow]) -> Theta {
     weighted(rows, 1.0, None)
 }
 
 /// The minimiser of `sum lambda^(n-i) (F_i - phi_i'theta)^2 + lambda^n (theta - at)'(theta - at) / covariance`.
-pub fn weighted(rows: &[Row], lambda: f64, prior: Option<Prior>) -> Theta {
+pub fn weighted(rows: &[RegressionRow], lambda: f64, prior: Option<Prior>) -> Theta {
     let weight = |age: usize| lambda.powf(0.5 * age as f64);
     let mut equations: Vec<(Vector2<f64>, f64)> = rows
         .iter()
@@ -34,7 +34,7 @@ pub fn weighted(rows: &[Row], lambda: f64, prior: Option<Prior>) -> Theta {
 }
 
 /// The normalised gradient step as what it minimises: three rows, the new one and one that holds each unknown.
-pub fn gradient_step(row: Row, before: Theta, gains: Vector2<f64>) -> Theta {
+pub fn gradient_step(row: RegressionRow, before: Theta, gains: Vector2<f64>) -> Theta {
     let hold = gains.map(|g| 1.0 / g.sqrt());
     solve(&[
         (row.regressor(), row.force),
@@ -44,14 +44,14 @@ pub fn gradient_step(row: Row, before: Theta, gains: Vector2<f64>) -> Theta {
 }
 
 /// Least squares in K alone, B given.
-pub fn stiffness_alone(rows: &[Row], damping: f64) -> f64 {
+pub fn stiffness_alone(rows: &[RegressionRow], damping: f64) -> f64 {
     let x = DVector::from_iterator(rows.len(), rows.iter().map(|r| r.x));
     let left = DVector::from_iterator(rows.len(), rows.iter().map(|r| r.force - damping * r.v));
     x.svd(true, true).solve(&left, 0.0).expect("a column that is not zero")[0]
 }
 
 /// Squared sine of the angle between the columns of penetration and rate.
-pub fn independence(rows: &[Row]) -> f64 {
+pub fn independence(rows: &[RegressionRow]) -> f64 {
     let columns = DMatrix::from_fn(rows.len(), 2, |i, j| if j == 0 { rows[i].x } else { rows[i].v });
     let (x, v) = (columns.column(0).norm(), columns.column(1).norm());
     let r = columns.qr().r();

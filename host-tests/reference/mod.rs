@@ -19,23 +19,23 @@ pub type Theta = Vector2<f64>;
 
 /// One row of the regression.
 #[derive(Debug, Clone, Copy)]
-pub struct Row {
+pub struct RegressionRow {
     pub x: f64,
     pub v: f64,
     pub force: f64,
 }
 
-impl Row {
+impl RegressionRow {
     pub fn regressor(self) -> Vector2<f64> {
         Vector2::new(self.x, self.v)
     }
 
-    pub fn misfit(self, theta: Theta) -> f64 {
+    pub fn residual(self, theta: Theta) -> f64 {
         self.force - self.regressor().dot(&theta)
     }
 }
 
-impl From<palpate::Observation> for Row {
+impl From<palpate::Observation> for RegressionRow {
     fn from(o: palpate::Observation) -> Self {
         Self { x: o.penetration.into(), v: o.rate.into(), force: o.force.into() }
     }
@@ -47,6 +47,6 @@ pub fn theta(i: palpate::Impedance) -> Theta {
 }
 
 /// Observations, widened.
-pub fn rows(observations: &[palpate::Observation]) -> Vec<Row> {
+pub fn rows(observations: &[palpate::Observation]) -> Vec<RegressionRow> {
     observations.iter().map(|&o| o.into()).collect()
 }

@@ -1,9 +1,9 @@
 //! Self-perturbing least squares in information form: the covariance exists only while it is kicked.
 
-use super::{Row, Theta};
+use super::{RegressionRow, Theta};
 use nalgebra::Matrix2;
 
-/// `R += phi phi'`, `theta = R^-1 (R theta + phi F)`, and where the residual before kicks, `R = (R^-1 + kick I)^-1`.
+/// `R += phi phi'`, `theta = R^-1 (R theta + phi F)`, and where the residual before perturbs, `R = (R^-1 + perturbation I)^-1`.
 #[derive(Debug, Clone)]
 pub struct SelfPerturbing {
     pub estimate: Theta,
@@ -24,15 +24,15 @@ impl SelfPerturbing {
         }
     }
 
-    /// The level of the kick that the next update adds, before it is rounded to a whole number.
+    /// The level of the perturbation that the next update adds, before it is rounded to a whole number.
     pub fn level(&self) -> f64 {
         self.sensitivity * self.innovation_before * self.innovation_before
     }
 
-    /// One row; `steps` of the kick are forced where given, for which side a tie falls to is not ours to say.
-    pub fn update(&mut self, row: Row, steps: Option<f64>) {
+    /// One row; `steps` of the perturbation are forced where given, for which side a tie falls to is not ours to say.
+    pub fn update(&mut self, row: RegressionRow, steps: Option<f64>) {
         let steps = steps.unwrap_or_else(|| self.level().round());
-        self.innovation_before = row.misfit(self.estimate);
+        self.innovation_before = row.residual(self.estimate);
         let known = self.information * self.estimate;
         self.information += row.regressor() * row.regressor().transpose();
         self.estimate = invert(self.information) * (known + row.regressor() * row.force);

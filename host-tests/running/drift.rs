@@ -1,16 +1,18 @@
 //! What a day of samples leaves behind in the sums: nothing.
 
 use super::{SOUND, contact::Contact};
-use palpate::{BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Law, Observation, Recent, direct};
+use palpate::{
+    BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, Direction, Observation, Recent, UpdateLaw, direct,
+};
 
 const WINDOW: usize = 300;
 
 /// After `count` samples: the estimate against a law that saw the last window alone, summed anew, as a share of K and B.
-fn left_behind<L: Law, D: Law>(law: &L, anew: &D, count: usize) -> [f64; 2] {
+fn left_behind<L: UpdateLaw, D: UpdateLaw>(law: &L, anew: &D, count: usize) -> [f64; 2] {
     // A thousand samples of noise go round and round; drawing 1e8 would take longer than estimating.
     let circle: Vec<Observation> = Contact::new(9, usize::MAX).take(1000).collect();
     let twice: Vec<Observation> = circle.iter().chain(&circle).copied().collect();
-    let (mut state, mut last) = (law.start(), None);
+    let (mut state, mut last) = (law.initial_state(), None);
     for k in 0..count {
         let end = 1000 + k % 1000;
         let first = end + 1 - WINDOW.min(k + 1);
@@ -19,7 +21,7 @@ fn left_behind<L: Law, D: Law>(law: &L, anew: &D, count: usize) -> [f64; 2] {
     let got = last.expect("samples").estimate;
     let end = 1000 + (count - 1) % 1000;
     // Newton settles on the minimum of one window in a few steps.
-    let mut fresh = anew.start();
+    let mut fresh = anew.initial_state();
     let want = (0..40).map(|_| anew.update(&mut fresh, Recent::of(&twice[end + 1 - WINDOW..=end])).estimate).last();
     let want = want.expect("a step");
     let share = |got: f32, want: f32| (f64::from(got) / f64::from(want) - 1.0).abs();

@@ -1,14 +1,14 @@
-//! Sums that run along with the window, against the window summed anew: in double precision, and in single.
+//! SecondOrderSums that run along with the window, against the window summed anew: in double precision, and in single.
 
 mod contact;
 mod double;
 mod drift;
 
-use crate::reference::{self, Row, Theta};
+use crate::reference::{self, RegressionRow, Theta};
 use contact::Contact;
 use palpate::{
-    BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares, Direction, Impedance, Law, Observation,
-    Recent, direct,
+    BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares, Direction, Impedance, Observation,
+    Recent, UpdateLaw, direct,
 };
 
 /// Samples from one jump of K to the next.
@@ -16,16 +16,16 @@ const EVERY: usize = 1237;
 
 const SOUND: &str = "sound settings";
 
-type Step = fn(&[Row], Theta) -> Theta;
+type Step = fn(&[RegressionRow], Theta) -> Theta;
 
 /// Relative errors of K, one an update, each judged from the estimate before it.
 struct Errors(Vec<(usize, f64)>);
 
 impl Errors {
     /// Runs `law` over `rows`, and compares every `stride`-th update, and all around a jump, with `step` in double precision.
-    fn of(law: &impl Law, rows: &[Observation], step: Step, stride: usize) -> Self {
+    fn of(law: &impl UpdateLaw, rows: &[Observation], step: Step, stride: usize) -> Self {
         let (window, doubles) = (law.window(), reference::rows(rows));
-        let mut state = law.start();
+        let mut state = law.initial_state();
         let (mut before, mut errors) = (Impedance::ZERO, Vec::new());
         for k in 0..rows.len() {
             let first = (k + 1).saturating_sub(window);
@@ -55,7 +55,7 @@ impl Errors {
 
 /// One law in both forms over the same contact of `count` samples, K jumping all the while: the rms errors of K over all
 /// samples, and the same over the two windows from the tenth sample after a jump on.
-fn both(name: &str, laws: (&impl Law, &impl Law), step: Step, count: usize) -> [f64; 4] {
+fn both(name: &str, laws: (&impl UpdateLaw, &impl UpdateLaw), step: Step, count: usize) -> [f64; 4] {
     let rows: Vec<_> = Contact::new(1, EVERY).take(count).collect();
     let window = laws.0.window();
     let around = |since: usize| (10..2 * window).contains(&since);

@@ -6,9 +6,9 @@ use anyhow::{Context as _, Result, ensure};
 use palpate::Method;
 use palpate_drive::replay_format::estimate_words;
 
-use crate::device::{Device, project};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::effects;
+use crate::qemu_bench::{QemuBench, project};
 use crate::recording::Recording;
 use crate::recordings_folder;
 use crate::replay::{Options, Outputs, Place, Replayed, Runner, replay};
@@ -44,8 +44,8 @@ pub fn run() -> Result<()> {
     }
 
     println!("\n3. The device: its image is built (half a minute of processor time), and QEMU is to run it");
-    let device = match Device::prepare(Leave::Install) {
-        Ok(device) => Some(Runner::Device(device)),
+    let device = match QemuBench::prepare(Leave::Install) {
+        Ok(device) => Some(Runner::QemuBench(device)),
         Err(error) if error.is::<MissingTools>() => {
             left_out.push(format!("the device: {error}"));
             None

@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use palpate::{BENCH_WINDOW, Method};
-use palpate_drive::link::{BAUD, Command, Message, Outcome, Source, Streams};
+use palpate::{BANK_WINDOW, Method};
+use palpate_drive::link::{BAUD, Command, Message, RequestOutcome, Source, Streams};
 use palpate_drive::{Calibration, Order, Scale, Settings};
 
 pub use client::Client;
@@ -45,7 +45,7 @@ pub struct ListenArgs {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).map(|name| method(&name)))]
     pub method: Option<Method>,
     /// Choose the window of the block methods, in samples
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=BENCH_WINDOW as i64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=BANK_WINDOW as i64))]
     pub window: Option<u16>,
     /// Choose the cut-off of the filter, 1 to 400 Hz
     #[arg(long, value_name = "HZ")]
@@ -274,11 +274,11 @@ pub struct About {
 
 /// An answer in words.
 #[must_use]
-pub fn in_words(outcome: Outcome) -> &'static str {
+pub fn in_words(outcome: RequestOutcome) -> &'static str {
     match outcome {
-        Outcome::Done => "done",
-        Outcome::OutOfRange => "a value is out of its range",
-        Outcome::NoRoom => "the drive has no room at present",
-        Outcome::NotNow => "the drive takes it in test mode alone",
+        RequestOutcome::Done => "done",
+        RequestOutcome::OutOfRange => "a value is out of its range",
+        RequestOutcome::NoRoom => "the drive has no room at present",
+        RequestOutcome::NotNow => "the drive takes it in test mode alone",
     }
 }

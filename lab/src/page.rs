@@ -41,7 +41,7 @@ pub struct Trial {
     pub penetration: Vec<f32>,
     /// Measured contact force, positive when the tool pushes.
     pub force: Vec<f32>,
-    /// The contact gate.
+    /// The contact detection.
     pub contact: Vec<bool>,
     /// One entry a method.
     pub methods: Vec<Method>,

@@ -24,8 +24,8 @@ pub use budget::{Cost, kept as kept_costs};
 pub use figures::Figures;
 pub use interrupt::{InterruptCost, interrupt_costs};
 
-use crate::device;
 use crate::outfile::OutFile;
+use crate::qemu_bench;
 use crate::tools::{self, Leave, TARGET};
 use calls::Calls;
 use counts::Case;
@@ -78,7 +78,7 @@ impl Profile {
     /// As [`Self::take`].
     pub fn of(leave: Leave, package: &str, kind: &str, name: &str) -> Result<Self> {
         let emulator = emulator::Emulator::prepare(tools::for_profiling(leave)?)?;
-        let image = Image::read(&device::build(package, kind, name)?)?;
+        let image = Image::read(&qemu_bench::build(package, kind, name)?)?;
         let cases = counts::combine(&emulator.with_plugin(&image)?, &emulator.with_clock(&image)?)?;
         let figures = figures::of(&image, &cases, &trial::updates(&trial::samples()?)?)?;
         Ok(Self { image, cases, figures })
@@ -107,7 +107,7 @@ impl Profile {
     /// # Errors
     /// The budget is not there.
     pub fn beyond_budget(&self) -> Result<String> {
-        budget::differences(&self.figures, &budget::path(&device::project()?))
+        budget::differences(&self.figures, &budget::path(&qemu_bench::project()?))
     }
 }
 
@@ -146,7 +146,7 @@ pub fn stack_from(image: &Path, entry: &str) -> Result<u32> {
 /// # Errors
 /// It does not build.
 pub fn interrupt_image() -> Result<PathBuf> {
-    device::build("palpate-firmware", "--bin", "replay")
+    qemu_bench::build("palpate-firmware", "--bin", "replay")
 }
 
 /// The image of a drive, built.
@@ -154,7 +154,7 @@ pub fn interrupt_image() -> Result<PathBuf> {
 /// # Errors
 /// It does not build.
 pub fn drive_image() -> Result<PathBuf> {
-    device::build("palpate-firmware", "--bin", "drive")
+    qemu_bench::build("palpate-firmware", "--bin", "drive")
 }
 
 /// Runs `palpate profile`.
@@ -190,7 +190,7 @@ pub fn run(args: &ProfileArgs) -> Result<()> {
         file.commit()?;
     }
     if args.renew_budget {
-        let path = budget::path(&device::project()?);
+        let path = budget::path(&qemu_bench::project()?);
         let mut file = OutFile::create(&path)?;
         file.write_all(budget::text(&profile.figures)?.as_bytes()).map_err(|error| file.fault(&error))?;
         file.commit()?;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::device::project;
+use crate::qemu_bench::project;
 
 /// Names a folder of real recordings.
 pub const VARIABLE: &str = "PALPATE_RECORDINGS";

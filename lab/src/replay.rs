@@ -12,11 +12,11 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use palpate::{Bench, BenchConfig, Sample};
-use palpate_drive::replay_format::Outcome;
+use palpate::{EstimatorBank, EstimatorBankConfig, Sample};
+use palpate_drive::replay_format::UpdateResult;
 
-use crate::device::Device;
 use crate::error::InputError;
+use crate::qemu_bench::QemuBench;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::tools::Leave;
@@ -123,7 +123,7 @@ pub enum Runner {
     /// Here.
     Host,
     /// Under QEMU.
-    Device(Device),
+    QemuBench(QemuBench),
 }
 
 impl Runner {
@@ -137,7 +137,7 @@ impl Runner {
     pub fn prepare(place: Place) -> Result<Self> {
         Ok(match place {
             Place::Host => Self::Host,
-            Place::Qemu => Self::Device(Device::prepare(Leave::Install)?),
+            Place::Qemu => Self::QemuBench(QemuBench::prepare(Leave::Install)?),
         })
     }
 
@@ -147,20 +147,20 @@ impl Runner {
     /// The settings are out of range, or the device fails.
     pub fn run(
         &self,
-        config: &BenchConfig,
+        config: &EstimatorBankConfig,
         samples: &[Sample],
         progress: impl Fn(u64),
-        mut take: impl FnMut(Outcome),
+        mut take: impl FnMut(UpdateResult),
     ) -> Result<()> {
         match self {
             Self::Host => {
-                let mut bench = Bench::new(config)?;
+                let mut bench = EstimatorBank::new(config)?;
                 for (done, block) in samples.chunks(Self::BLOCK).enumerate() {
                     progress((done * Self::BLOCK) as u64);
                     block.iter().for_each(|&sample| take(bench.update(sample)));
                 }
             }
-            Self::Device(device) => {
+            Self::QemuBench(device) => {
                 device.run(config, samples, progress, take)?;
             }
         }

@@ -6,11 +6,11 @@
 use std::path::Path;
 
 use palpate::{
-    Bench, BenchConfig, BlockConfig, ContactLoss, Field, FrontEndConfig, Method, Rejection, Sample, StreamConfig,
-    Velocity,
+    BlockConfig, ContactLoss, EstimatorBank, EstimatorBankConfig, Field, FrontEndConfig, Method, Rejection, Sample,
+    StreamConfig, Velocity,
 };
-use palpate_drive::replay_format::{Counters, Outcome, estimate_words};
-use palpate_lab::device::{Device, project};
+use palpate_drive::replay_format::{ReplayCounters, UpdateResult, estimate_words};
+use palpate_lab::qemu_bench::{QemuBench, project};
 use palpate_lab::recording::Recording;
 use palpate_lab::recordings_folder;
 use palpate_lab::replay::{Options, Plan};
@@ -19,8 +19,8 @@ use palpate_lab::simulate;
 use palpate_lab::tools::{Leave, MissingTools};
 
 /// The device, or `None` with a word where its tools are absent.
-fn device() -> Option<Device> {
-    match Device::prepare(Leave::Look) {
+fn device() -> Option<QemuBench> {
+    match QemuBench::prepare(Leave::Look) {
         Ok(device) => Some(device),
         Err(error) if error.is::<MissingTools>() && std::env::var_os("PALPATE_DEVICE").is_none() => {
             eprintln!("left out: {error}");
@@ -30,14 +30,19 @@ fn device() -> Option<Device> {
     }
 }
 
-fn every_estimator(stream: StreamConfig) -> BenchConfig {
-    BenchConfig { block: BlockConfig::of(120), ..BenchConfig::every(stream) }
+fn every_estimator(stream: StreamConfig) -> EstimatorBankConfig {
+    EstimatorBankConfig { block: BlockConfig::of(120), ..EstimatorBankConfig::all_methods(stream) }
 }
 
 /// Runs both and compares every word of every outcome; returns the device's counters and the host's outcomes.
-fn compare(device: &Device, what: &str, config: &BenchConfig, samples: &[Sample]) -> (Counters, Vec<Outcome>) {
-    let mut bench = Bench::new(config).expect("sound settings");
-    let host: Vec<Outcome> = samples.iter().map(|&sample| bench.update(sample)).collect();
+fn compare(
+    device: &QemuBench,
+    what: &str,
+    config: &EstimatorBankConfig,
+    samples: &[Sample],
+) -> (ReplayCounters, Vec<UpdateResult>) {
+    let mut bench = EstimatorBank::new(config).expect("sound settings");
+    let host: Vec<UpdateResult> = samples.iter().map(|&sample| bench.update(sample)).collect();
     let mut returned = 0;
     let counters = device
         .run(
@@ -55,7 +60,7 @@ fn compare(device: &Device, what: &str, config: &BenchConfig, samples: &[Sample]
     (counters, host)
 }
 
-fn assert_same(what: &str, k: usize, host: &Outcome, device: &Outcome) {
+fn assert_same(what: &str, k: usize, host: &UpdateResult, device: &UpdateResult) {
     match (host, device) {
         (Ok(host), Ok(device)) => {
             for (method, (host, device)) in Method::ALL.iter().zip(host.iter().zip(device)) {
@@ -111,7 +116,7 @@ fn on_every_real_recording_every_estimate_has_the_same_bits() {
 }
 
 /// The surface stands at the median position, so that about half of any recording is contact.
-fn compare_trial(device: &Device, path: &Path) -> usize {
+fn compare_trial(device: &QemuBench, path: &Path) -> usize {
     let recording = Recording::read(path, &Rig::default()).unwrap_or_else(|error| panic!("{error}"));
     let mut positions = recording.position.clone();
     positions.sort_by(f64::total_cmp);
@@ -205,7 +210,8 @@ fn an_empty_recording_and_a_single_sample_come_back() {
 #[test]
 fn settings_out_of_range_are_refused_by_the_image_and_told() {
     let Some(device) = device() else { return };
-    let config = BenchConfig { block: BlockConfig::of(5000), ..BenchConfig::every(StreamConfig::BENCH) };
+    let config =
+        EstimatorBankConfig { block: BlockConfig::of(5000), ..EstimatorBankConfig::all_methods(StreamConfig::BENCH) };
     let error = device.run(&config, &[], |_| (), |_| ()).expect_err("a window of 5000 samples");
     assert!(format!("{error:#}").contains("the settings are out of range"), "{error:#}");
 }

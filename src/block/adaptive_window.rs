@@ -3,14 +3,14 @@
 use crate::block::config::BlockConfig;
 use crate::block::law::BlockState;
 use crate::block::least_squares::BlockLeastSquares;
-use crate::block::second_order::Sums;
-use crate::block::two_stack_aggregate::Queue;
+use crate::block::second_order::SecondOrderSums;
+use crate::block::two_stack_aggregate::TwoStackAggregate;
 use crate::change_detector::{ChangeConfig, ChangeState};
 use crate::error::{ConfigError, require};
 use crate::prior::Prior;
 use crate::quality::Flags;
 use crate::quality::Step;
-use crate::update_law::Law;
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ pub struct AdaptiveWindow {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptiveWindowState {
     /// Of the block law.
-    pub block: BlockState<Queue<Sums>>,
+    pub block: BlockState<TwoStackAggregate<SecondOrderSums>>,
     change: ChangeState,
     length: u16,
 }
@@ -74,15 +74,15 @@ impl AdaptiveWindow {
     }
 }
 
-impl Law for AdaptiveWindow {
+impl UpdateLaw for AdaptiveWindow {
     type State = AdaptiveWindowState;
 
-    fn start(&self) -> AdaptiveWindowState {
+    fn initial_state(&self) -> AdaptiveWindowState {
         AdaptiveWindowState::default()
     }
 
-    fn forget(&self, state: &mut AdaptiveWindowState) {
-        self.law.forget(&mut state.block);
+    fn reset_memory(&self, state: &mut AdaptiveWindowState) {
+        self.law.reset_memory(&mut state.block);
         (state.change, state.length) = (ChangeState::default(), 0);
     }
 
@@ -91,7 +91,7 @@ impl Law for AdaptiveWindow {
     }
 
     fn update(&self, state: &mut AdaptiveWindowState, recent: Recent<'_>) -> Step {
-        let innovation = recent.newest().unwrap_or_default().misfit(state.block.estimate);
+        let innovation = recent.newest().unwrap_or_default().residual(state.block.estimate);
         let changed = self.change.update(&mut state.change, innovation);
         state.length = if changed { self.shortest } else { state.length.saturating_add(1) };
         let mut step = self.law.update(&mut state.block, recent.last(usize::from(state.length)));

@@ -4,12 +4,12 @@
 use crate::block::law::BlockLaw;
 use crate::block::least_mean_square::LeastMeanSquare;
 use crate::block::least_squares::LeastSquares;
-use crate::block::window_sums::Anew;
+use crate::block::window_sums::DirectSums;
 
 pub use crate::block::direct_least_mean_fourth::{BlockLeastMeanFourth, LineSearch};
 
 /// [`crate::BlockLeastSquares`], summed anew.
-pub type BlockLeastSquares = BlockLaw<LeastSquares<Anew>>;
+pub type BlockLeastSquares = BlockLaw<LeastSquares<DirectSums>>;
 
 /// [`crate::BlockLeastMeanSquare`], summed anew.
-pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<Anew>>;
+pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<DirectSums>>;

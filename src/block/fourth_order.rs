@@ -1,6 +1,6 @@
 //! Moments of fourth order, and what follows from them at any estimate.
 
-use crate::block::second_order::{Moments, Sums, gather};
+use crate::block::second_order::{Moments, SecondOrderSums, kahan_add};
 use crate::contact::{Impedance, Observation};
 use crate::math::sym2::Sym2;
 
@@ -9,18 +9,18 @@ use crate::math::sym2::Sym2;
 ///
 /// In the order xxxx, xxxv, xxvv, xvvv, vvvv, xxxe, xxve, xvve, vvve, xxee, xvee, vvee, xeee, veee, eeee.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Fourth {
-    second: Sums,
+pub struct FourthOrderSums {
+    second: SecondOrderSums,
     sums: [f32; 15],
 }
 
-impl Moments for Fourth {
+impl Moments for FourthOrderSums {
     #[inline(always)]
     fn of(o: &Observation, e: f32) -> Self {
-        let second = Sums::of(o, e);
+        let second = SecondOrderSums::of(o, e);
         let Sym2 { xx, xv, vv } = second.regressors;
-        let Impedance { stiffness: xe, damping: ve } = second.misfit;
-        let ee = second.misfit_energy;
+        let Impedance { stiffness: xe, damping: ve } = second.residual;
+        let ee = second.residual_energy;
         let regressors = [xx * xx, xx * xv, xx * vv, xv * vv, vv * vv];
         let [xxxx, xxxv, xxvv, xvvv, vvvv] = regressors;
         let sums = [
@@ -53,14 +53,14 @@ impl Moments for Fourth {
     }
 
     #[inline(always)]
-    fn gather(&mut self, lost: &mut Self, terms: &Self, sign: f32) {
-        self.second.gather(&mut lost.second, &terms.second, sign);
+    fn kahan_add(&mut self, lost: &mut Self, terms: &Self, sign: f32) {
+        self.second.kahan_add(&mut lost.second, &terms.second, sign);
         for ((sum, lost), term) in self.sums.iter_mut().zip(&mut lost.sums).zip(&terms.sums) {
-            gather(sum, lost, sign * term);
+            kahan_add(sum, lost, sign * term);
         }
     }
 
-    /// The misfit there is the old one less a x + b v, so each power of it follows from the one below.
+    /// The residual there is the old one less a x + b v, so each power of it follows from the one below.
     #[inline(always)]
     fn shifted(&self, shift: Impedance) -> Self {
         let Impedance { stiffness: a, damping: b } = shift;
@@ -79,12 +79,12 @@ impl Moments for Fourth {
         Self { second: self.second.shifted(shift), sums }
     }
 
-    fn second(&self) -> &Sums {
+    fn second(&self) -> &SecondOrderSums {
         &self.second
     }
 }
 
-impl Fourth {
+impl FourthOrderSums {
     /// `sum phi e^3`: downhill.
     pub fn descent(&self) -> Impedance {
         let [.., stiffness, damping, _] = self.sums;

@@ -3,12 +3,12 @@
 use crate::block::config::BlockConfig;
 use crate::block::second_order::Moments;
 use crate::block::solution::Solution;
-use crate::block::window_sums::{Local, Memory};
+use crate::block::window_sums::{CentredMoments, WindowSums};
 use crate::contact::Impedance;
 use crate::quality::Confidence;
 use crate::quality::Flags;
 use crate::quality::Step;
-use crate::update_law::Law;
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 
 /// State of a block law: the estimate, and what is remembered of the window beside its samples.
@@ -21,7 +21,7 @@ pub struct BlockState<M> {
 
 /// What a law makes of the window's sums.
 #[derive(Debug, Clone, Copy)]
-pub struct Move {
+pub struct CriterionStep {
     /// Where the estimate is to go.
     pub to: Impedance,
     /// Variance per sample of the law's own criterion.
@@ -32,25 +32,25 @@ pub struct Move {
 
 /// A window as a criterion sees it.
 #[derive(Debug, Clone, Copy)]
-pub struct View<'a, M: Memory> {
+pub struct WindowView<'a, M: WindowSums> {
     pub config: &'a BlockConfig,
     pub recent: Recent<'a>,
     pub memory: &'a M,
     pub estimate: Impedance,
     pub samples: f32,
-    pub local: &'a Local<M::Local>,
+    pub local: &'a CentredMoments<M::CentredMoments>,
     /// What least squares would do, from the centre.
     pub solution: Solution,
 }
 
-impl<'a, M: Memory> View<'a, M> {
+impl<'a, M: WindowSums> WindowView<'a, M> {
     #[inline(always)]
     pub fn of(
         config: &'a BlockConfig,
         memory: &'a M,
         recent: Recent<'a>,
         estimate: Impedance,
-        local: &'a mut Local<M::Local>,
+        local: &'a mut CentredMoments<M::CentredMoments>,
     ) -> Self {
         let samples = recent.len() as f32;
         let mut solution = Solution::of(local.moments.second(), samples, config, local.centre);
@@ -73,10 +73,10 @@ impl<'a, M: Memory> View<'a, M> {
 /// What one block law has of its own.
 pub trait Criterion {
     /// What it remembers of the window.
-    type Memory: Memory;
+    type WindowSums: WindowSums;
 
     /// The move from the estimate of `view`.
-    fn advance(&self, view: &View<'_, Self::Memory>) -> Move;
+    fn advance(&self, view: &WindowView<'_, Self::WindowSums>) -> CriterionStep;
 }
 
 /// A law on a sliding window: what all of them share, about the criterion of each.
@@ -88,14 +88,14 @@ pub struct BlockLaw<C> {
 
 impl<C: Criterion> BlockLaw<C> {
     /// Moves the estimate by the newest of `recent`, and nothing else: no interval, fill or excitation. The state is that of
-    /// [`Law::update`], and either may follow on the other. Returns the innovation, in internal units of force.
-    pub fn learn(&self, state: &mut BlockState<C::Memory>, recent: Recent<'_>) -> f32 {
+    /// [`UpdateLaw::update`], and either may follow on the other. Returns the innovation, in internal units of force.
+    pub fn update_estimate(&self, state: &mut BlockState<C::WindowSums>, recent: Recent<'_>) -> f32 {
         let recent = recent.last(self.window());
-        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
-        state.memory.follow(&self.config, recent, state.estimate);
+        let innovation = recent.newest().unwrap_or_default().residual(state.estimate);
+        state.memory.push(&self.config, recent, state.estimate);
         if recent.len() >= usize::from(self.config.minimum_fill) {
-            let mut local = state.memory.local(recent, state.estimate);
-            let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
+            let mut local = state.memory.centred_moments(recent, state.estimate);
+            let view = WindowView::of(&self.config, &state.memory, recent, state.estimate, &mut local);
             let moved = self.criterion.advance(&view).to;
             if moved.is_finite() {
                 state.estimate = moved;
@@ -105,16 +105,16 @@ impl<C: Criterion> BlockLaw<C> {
     }
 }
 
-impl<C: Criterion> Law for BlockLaw<C> {
-    type State = BlockState<C::Memory>;
+impl<C: Criterion> UpdateLaw for BlockLaw<C> {
+    type State = BlockState<C::WindowSums>;
 
-    fn start(&self) -> Self::State {
+    fn initial_state(&self) -> Self::State {
         BlockState::default()
     }
 
     /// Whoever holds the window clears it; a window that still holds samples at the next update is summed anew once.
-    fn forget(&self, state: &mut Self::State) {
-        state.memory = C::Memory::default();
+    fn reset_memory(&self, state: &mut Self::State) {
+        state.memory = C::WindowSums::default();
     }
 
     fn window(&self) -> usize {
@@ -123,16 +123,16 @@ impl<C: Criterion> Law for BlockLaw<C> {
 
     fn update(&self, state: &mut Self::State, recent: Recent<'_>) -> Step {
         let recent = recent.last(self.window());
-        let innovation = recent.newest().unwrap_or_default().misfit(state.estimate);
+        let innovation = recent.newest().unwrap_or_default().residual(state.estimate);
         let fill = recent.len() as f32 / f32::from(self.config.window);
-        state.memory.follow(&self.config, recent, state.estimate);
+        state.memory.push(&self.config, recent, state.estimate);
         if recent.len() < usize::from(self.config.minimum_fill) {
             let (confidence, excitation, flags) = (Confidence::NONE, 0.0, Flags::TOO_FEW);
             return Step { estimate: state.estimate, innovation, confidence, fill, excitation, flags };
         }
-        let mut local = state.memory.local(recent, state.estimate);
-        let view = View::of(&self.config, &state.memory, recent, state.estimate, &mut local);
-        let Move { to, noise_variance, flags } = self.criterion.advance(&view);
+        let mut local = state.memory.centred_moments(recent, state.estimate);
+        let view = WindowView::of(&self.config, &state.memory, recent, state.estimate, &mut local);
+        let CriterionStep { to, noise_variance, flags } = self.criterion.advance(&view);
         let (sums, solution) = (view.local.moments.second(), &view.solution);
         // Not at all where that would leave the finite numbers.
         let estimate = if to.is_finite() { to } else { state.estimate };
@@ -143,7 +143,7 @@ impl<C: Criterion> Law for BlockLaw<C> {
             confidence: Confidence {
                 noise: solution.inverse.scaled(noise_variance),
                 noise_gain: solution.inverse,
-                remainder: view.least_squares().moved(-1.0, estimate),
+                startup_bias: view.least_squares().moved(-1.0, estimate),
                 offset_gain: solution.inverse.times(sums.regressor),
                 samples: view.samples,
             },

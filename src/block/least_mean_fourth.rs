@@ -1,13 +1,13 @@
 //! Block least mean fourth (BLMF): one exact line search of `sum e^4` a sample.
 
-use crate::block::compensated_sums::Running;
+use crate::block::compensated_sums::CompensatedSums;
 use crate::block::config::BlockConfig;
-use crate::block::fourth_order::Fourth;
-use crate::block::law::{BlockLaw, Criterion, Move, View};
+use crate::block::fourth_order::FourthOrderSums;
+use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
-use crate::block::second_order::Sums;
+use crate::block::second_order::SecondOrderSums;
 use crate::block::solution::Solution;
-use crate::block::window_sums::Memory;
+use crate::block::window_sums::WindowSums;
 use crate::contact::Impedance;
 use crate::error::ConfigError;
 use crate::math::cubic::depressed_root;
@@ -46,7 +46,7 @@ impl Direction {
 /// about the centre `l = sum p^3 e / A`, where the quadratic term vanishes.
 ///
 /// J is a polynomial in theta whose fifteen coefficients are kept as running sums, so an update costs the same at any
-/// window. Fourth powers are those of internal units ([`crate::Units`]): a misfit within 1e-8 to 1e8 of them neither
+/// window. FourthOrderSums powers are those of internal units ([`crate::Units`]): a residual within 1e-8 to 1e8 of them neither
 /// underflows nor overflows.
 ///
 /// The interval is that of least mean fourth at its minimum, `E e^6 / (9 (E e^2)^2)` in place of the variance (with the sixth
@@ -75,9 +75,9 @@ impl BlockLeastMeanFourth {
 
 /// Along which to search, its larger entry of size one; `None` where there is no gradient. Where B cannot be told, Newton's
 /// direction is that of K alone.
-pub(crate) fn way_down<M: Memory>(
+pub(crate) fn search_direction<M: WindowSums>(
     direction: Direction,
-    view: &View<'_, M>,
+    view: &WindowView<'_, M>,
     descent: Impedance,
     hessian: Sym2,
 ) -> Option<Impedance> {
@@ -98,10 +98,10 @@ pub(crate) fn way_down<M: Memory>(
 
 /// Where the quadratic term takes more than this share of the curvature, its centre is looked at from nearby: with less,
 /// the difference of the two loses no more than a digit of a bit.
-const SHARE: f32 = 0.5;
+const MAX_CENTRE_FRACTION: f32 = 0.5;
 
 /// How far to go along `u`, in its length; `None` where nothing is excited along it.
-fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
+fn length_along(u: Impedance, view: &WindowView<'_, CompensatedSums<FourthOrderSums>>) -> Option<f32> {
     let here = &view.local.moments;
     let quartic = here.quartic(u);
     if quartic.is_nan() || quartic <= 0.0 {
@@ -109,8 +109,8 @@ fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
     }
     let (cubic, square, slope) = (here.cubic(u), here.square(u), here.slope(u));
     let centre = cubic / quartic;
-    let (spread, skew) = if centre * cubic > SHARE * square {
-        let there = view.memory.seen_from(view.estimate.moved(centre, u));
+    let (spread, skew) = if centre * cubic > MAX_CENTRE_FRACTION * square {
+        let there = view.memory.moments_about(view.estimate.moved(centre, u));
         (larger(there.square(u), 0.0), there.slope(u))
     } else {
         (square - centre * cubic, slope - centre * (3.0 * square - 2.0 * (centre * cubic)))
@@ -122,22 +122,22 @@ fn length_along(u: Impedance, view: &View<'_, Running<Fourth>>) -> Option<f32> {
 /// Variance per sample at the minimum of the fourth power, `E e^6 / (9 (E e^2)^2)`, with the sixth moment of a Gaussian of
 /// the same second and fourth, `E e^6 = 5/3 (E e^4)^2 / E e^2`. For uniform noise that is 1.4 times too much; for rare
 /// spikes too little, by up to a factor of four.
-fn noise_variance(sums: &Sums, samples: f32, cost: f32) -> f32 {
-    let square = sums.misfit_energy / samples;
+fn noise_variance(sums: &SecondOrderSums, samples: f32, cost: f32) -> f32 {
+    let square = sums.residual_energy / samples;
     // Never less than Cauchy and Schwarz allow, whatever rounding has left.
     let kurtosis = larger(cost / (samples * square * square), 1.0);
     if square > 0.0 { 5.0 / 27.0 * (kurtosis * kurtosis * square) } else { 0.0 }
 }
 
 impl Criterion for LeastMeanFourth {
-    type Memory = Running<Fourth>;
+    type WindowSums = CompensatedSums<FourthOrderSums>;
 
-    fn advance(&self, view: &View<'_, Running<Fourth>>) -> Move {
+    fn advance(&self, view: &WindowView<'_, CompensatedSums<FourthOrderSums>>) -> CriterionStep {
         let here = &view.local.moments;
-        let step = way_down(self.direction, view, here.descent(), here.hessian())
+        let step = search_direction(self.direction, view, here.descent(), here.hessian())
             .and_then(|u| Some((length_along(u, view)?, u)))
             .map_or(Impedance::ZERO, |(length, u)| Impedance::ZERO.moved(length, u));
-        Move {
+        CriterionStep {
             to: view.estimate.moved(1.0, step),
             noise_variance: noise_variance(here.second(), view.samples, here.cost()),
             flags: self.direction.flags(&view.solution),

@@ -3,11 +3,11 @@
 use core::marker::PhantomData;
 
 use crate::block::config::BlockConfig;
-use crate::block::law::{BlockLaw, Criterion, Move, View};
+use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
-use crate::block::second_order::Sums;
-use crate::block::two_stack_aggregate::Queue;
-use crate::block::window_sums::Memory;
+use crate::block::second_order::SecondOrderSums;
+use crate::block::two_stack_aggregate::TwoStackAggregate;
+use crate::block::window_sums::WindowSums;
 use crate::contact::Impedance;
 use crate::error::ConfigError;
 use crate::math::larger;
@@ -19,13 +19,13 @@ use crate::quality::Flags;
 /// Without the length of g, and in one pass, that is `theta += (d'd / d'Rd) d` with `d = sum phi e`, `R = sum phi phi'`.
 ///
 /// An update costs the same at any window.
-pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<Queue<Sums>>>;
+pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<TwoStackAggregate<SecondOrderSums>>>;
 
 /// `sum (F - phi' theta)^2`, descended by one step a sample.
 #[derive(Debug, Clone, Copy)]
 pub struct LeastMeanSquare<M>(PhantomData<M>);
 
-impl<M: Memory> BlockLaw<LeastMeanSquare<M>> {
+impl<M: WindowSums> BlockLaw<LeastMeanSquare<M>> {
     /// Checks the settings.
     ///
     /// # Errors
@@ -35,13 +35,13 @@ impl<M: Memory> BlockLaw<LeastMeanSquare<M>> {
     }
 }
 
-impl<M: Memory> Criterion for LeastMeanSquare<M> {
-    type Memory = M;
+impl<M: WindowSums> Criterion for LeastMeanSquare<M> {
+    type WindowSums = M;
 
-    fn advance(&self, view: &View<'_, M>) -> Move {
+    fn advance(&self, view: &WindowView<'_, M>) -> CriterionStep {
         let (sums, solution) = (view.local.moments.second(), &view.solution);
         let here = sums.shifted(view.estimate.moved(-1.0, view.local.centre));
-        Move {
+        CriterionStep {
             to: view.estimate.moved(1.0, steepest_step(&here)),
             noise_variance: solution.residual_variance(sums, view.samples),
             // A descent moves both along its gradient, whatever least squares could have solved for.
@@ -51,8 +51,8 @@ impl<M: Memory> Criterion for LeastMeanSquare<M> {
 }
 
 /// The step along the steepest descent of `sum (e - step)^2`; zero where the gradient is zero or no step is finite.
-fn steepest_step(sums: &Sums) -> Impedance {
-    let Impedance { stiffness, damping } = sums.misfit;
+fn steepest_step(sums: &SecondOrderSums) -> Impedance {
+    let Impedance { stiffness, damping } = sums.residual;
     let largest = larger(stiffness.abs(), damping.abs());
     if largest <= 0.0 {
         return Impedance::ZERO;

@@ -3,11 +3,11 @@
 use core::marker::PhantomData;
 
 use crate::block::config::BlockConfig;
-use crate::block::law::{BlockLaw, Criterion, Move, View};
+use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
-use crate::block::second_order::Sums;
-use crate::block::two_stack_aggregate::Queue;
-use crate::block::window_sums::Memory;
+use crate::block::second_order::SecondOrderSums;
+use crate::block::two_stack_aggregate::TwoStackAggregate;
+use crate::block::window_sums::WindowSums;
 use crate::error::ConfigError;
 
 /// `theta = (sum phi phi')^-1 sum phi F` over the window (eq. 5-6), by the closed 2x2 inverse.
@@ -16,13 +16,13 @@ use crate::error::ConfigError;
 /// rounding. Where penetration and rate are in line, or the tool holds still, K alone is solved for and B is held.
 ///
 /// An update costs the same at any window.
-pub type BlockLeastSquares = BlockLaw<LeastSquares<Queue<Sums>>>;
+pub type BlockLeastSquares = BlockLaw<LeastSquares<TwoStackAggregate<SecondOrderSums>>>;
 
 /// `sum (F - phi' theta)^2`, solved outright.
 #[derive(Debug, Clone, Copy)]
 pub struct LeastSquares<M>(PhantomData<M>);
 
-impl<M: Memory> BlockLaw<LeastSquares<M>> {
+impl<M: WindowSums> BlockLaw<LeastSquares<M>> {
     /// Checks the settings.
     ///
     /// # Errors
@@ -32,12 +32,12 @@ impl<M: Memory> BlockLaw<LeastSquares<M>> {
     }
 }
 
-impl<M: Memory> Criterion for LeastSquares<M> {
-    type Memory = M;
+impl<M: WindowSums> Criterion for LeastSquares<M> {
+    type WindowSums = M;
 
-    fn advance(&self, view: &View<'_, M>) -> Move {
+    fn advance(&self, view: &WindowView<'_, M>) -> CriterionStep {
         let (sums, solution) = (view.local.moments.second(), &view.solution);
-        Move {
+        CriterionStep {
             to: view.least_squares(),
             noise_variance: solution.residual_variance(sums, view.samples),
             flags: solution.flags,

@@ -4,38 +4,38 @@ use crate::contact::{Impedance, Observation};
 use crate::math::sym2::Sym2;
 use crate::window::Recent;
 
-/// Sums of regressors and of the misfit `e = F - phi' c` of an estimate c. Taken about an estimate that is near, they
+/// SecondOrderSums of regressors and of the residual `e = F - phi' c` of an estimate c. Taken about an estimate that is near, they
 /// lose less to rounding than sums of raw force.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sums {
+pub struct SecondOrderSums {
     /// `sum phi phi'`.
     pub regressors: Sym2,
     /// `sum phi`.
     pub regressor: Impedance,
     /// `sum phi e`.
-    pub misfit: Impedance,
+    pub residual: Impedance,
     /// `sum e^2`.
-    pub misfit_energy: f32,
+    pub residual_energy: f32,
 }
 
-impl Sums {
+impl SecondOrderSums {
     /// Over all of `recent`, about `centre`.
     pub fn over(recent: Recent<'_>, centre: Impedance) -> Self {
         let mut s = Self::default();
-        recent.for_each(|o| s = s.with(&Self::of(o, o.misfit(centre))));
+        recent.for_each(|o| s = s.with(&Self::of(o, o.residual(centre))));
         s
     }
 }
 
-impl Moments for Sums {
+impl Moments for SecondOrderSums {
     #[inline(always)]
     fn of(o: &Observation, e: f32) -> Self {
         let (x, v) = (o.penetration, o.rate);
         Self {
             regressors: Sym2 { xx: x * x, xv: x * v, vv: v * v },
             regressor: Impedance { stiffness: x, damping: v },
-            misfit: Impedance { stiffness: x * e, damping: v * e },
-            misfit_energy: e * e,
+            residual: Impedance { stiffness: x * e, damping: v * e },
+            residual_energy: e * e,
         }
     }
 
@@ -45,42 +45,42 @@ impl Moments for Sums {
         Self {
             regressors: Sym2 { xx: r.xx + s.xx, xv: r.xv + s.xv, vv: r.vv + s.vv },
             regressor: plus(self.regressor, other.regressor),
-            misfit: plus(self.misfit, other.misfit),
-            misfit_energy: self.misfit_energy + other.misfit_energy,
+            residual: plus(self.residual, other.residual),
+            residual_energy: self.residual_energy + other.residual_energy,
         }
     }
 
     #[inline(always)]
-    fn gather(&mut self, lost: &mut Self, terms: &Self, sign: f32) {
+    fn kahan_add(&mut self, lost: &mut Self, terms: &Self, sign: f32) {
         let (r, l, t) = (&mut self.regressors, &mut lost.regressors, &terms.regressors);
-        gather(&mut r.xx, &mut l.xx, sign * t.xx);
-        gather(&mut r.xv, &mut l.xv, sign * t.xv);
-        gather(&mut r.vv, &mut l.vv, sign * t.vv);
+        kahan_add(&mut r.xx, &mut l.xx, sign * t.xx);
+        kahan_add(&mut r.xv, &mut l.xv, sign * t.xv);
+        kahan_add(&mut r.vv, &mut l.vv, sign * t.vv);
         for (sum, lost, terms) in [
             (&mut self.regressor, &mut lost.regressor, &terms.regressor),
-            (&mut self.misfit, &mut lost.misfit, &terms.misfit),
+            (&mut self.residual, &mut lost.residual, &terms.residual),
         ] {
-            gather(&mut sum.stiffness, &mut lost.stiffness, sign * terms.stiffness);
-            gather(&mut sum.damping, &mut lost.damping, sign * terms.damping);
+            kahan_add(&mut sum.stiffness, &mut lost.stiffness, sign * terms.stiffness);
+            kahan_add(&mut sum.damping, &mut lost.damping, sign * terms.damping);
         }
-        gather(&mut self.misfit_energy, &mut lost.misfit_energy, sign * terms.misfit_energy);
+        kahan_add(&mut self.residual_energy, &mut lost.residual_energy, sign * terms.residual_energy);
     }
 
     /// `sum phi e' = sum phi e - R d`, `sum e'^2 = sum e^2 - d'(sum phi e + sum phi e')`.
     #[inline(always)]
     fn shifted(&self, shift: Impedance) -> Self {
         let moved = self.regressors.times(shift);
-        let misfit = Impedance {
-            stiffness: self.misfit.stiffness - moved.stiffness,
-            damping: self.misfit.damping - moved.damping,
+        let residual = Impedance {
+            stiffness: self.residual.stiffness - moved.stiffness,
+            damping: self.residual.damping - moved.damping,
         };
-        let energy = self.misfit_energy
-            - (shift.stiffness * (self.misfit.stiffness + misfit.stiffness)
-                + shift.damping * (self.misfit.damping + misfit.damping));
-        Self { misfit, misfit_energy: if energy < 0.0 { 0.0 } else { energy }, ..*self }
+        let energy = self.residual_energy
+            - (shift.stiffness * (self.residual.stiffness + residual.stiffness)
+                + shift.damping * (self.residual.damping + residual.damping));
+        Self { residual, residual_energy: if energy < 0.0 { 0.0 } else { energy }, ..*self }
     }
 
-    fn second(&self) -> &Sums {
+    fn second(&self) -> &SecondOrderSums {
         self
     }
 }
@@ -89,25 +89,25 @@ fn plus(a: Impedance, b: Impedance) -> Impedance {
     Impedance { stiffness: a.stiffness + b.stiffness, damping: a.damping + b.damping }
 }
 
-/// Sums over samples that can be added, taken off, and seen from another estimate.
+/// SecondOrderSums over samples that can be added, taken off, and seen from another estimate.
 pub trait Moments: Copy + Default + core::fmt::Debug {
-    /// Of one sample with misfit `e`.
+    /// Of one sample with residual `e`.
     fn of(o: &Observation, e: f32) -> Self;
     /// The samples of both, which are summed about the same estimate.
     #[must_use]
     fn with(&self, other: &Self) -> Self;
     /// Adds `sign` times `terms` by Kahan's summation: `lost` is what rounding has kept out so far.
-    fn gather(&mut self, lost: &mut Self, terms: &Self, sign: f32);
+    fn kahan_add(&mut self, lost: &mut Self, terms: &Self, sign: f32);
     /// The same samples about an estimate that is `shift` further.
     #[must_use]
     fn shifted(&self, shift: Impedance) -> Self;
     /// The sums of second order.
-    fn second(&self) -> &Sums;
+    fn second(&self) -> &SecondOrderSums;
 }
 
 /// One term of Kahan's summation.
 #[inline(always)]
-pub fn gather(sum: &mut f32, lost: &mut f32, term: f32) {
+pub fn kahan_add(sum: &mut f32, lost: &mut f32, term: f32) {
     let term = term - *lost;
     let next = *sum + term;
     *lost = (next - *sum) - term;

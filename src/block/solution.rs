@@ -1,7 +1,7 @@
 //! The least-squares solution of a window's sums.
 
 use crate::block::config::BlockConfig;
-use crate::block::second_order::Sums;
+use crate::block::second_order::SecondOrderSums;
 use crate::contact::Impedance;
 use crate::math::larger;
 use crate::math::sym2::Sym2;
@@ -21,29 +21,29 @@ impl Solution {
     ///
     /// A prior of `config` pulls towards zero; `centre` is the estimate that the sums of so many `samples` were taken about.
     #[inline(always)]
-    pub fn of(sums: &Sums, samples: f32, config: &BlockConfig, centre: Impedance) -> Self {
+    pub fn of(sums: &SecondOrderSums, samples: f32, config: &BlockConfig, centre: Impedance) -> Self {
         match config.prior {
             None => Self::plain(sums, samples, config),
             Some(prior) => {
                 let (ridge, mut sums) = (prior.ridge(), *sums);
                 sums.regressors.xx += ridge.stiffness;
                 sums.regressors.vv += ridge.damping;
-                sums.misfit.stiffness -= ridge.stiffness * centre.stiffness;
-                sums.misfit.damping -= ridge.damping * centre.damping;
+                sums.residual.stiffness -= ridge.stiffness * centre.stiffness;
+                sums.residual.damping -= ridge.damping * centre.damping;
                 Self::plain(&sums, samples, config)
             }
         }
     }
 
-    fn plain(sums: &Sums, samples: f32, config: &BlockConfig) -> Self {
+    fn plain(sums: &SecondOrderSums, samples: f32, config: &BlockConfig) -> Self {
         let moving = sums.regressors.vv > samples * (config.rate_floor * config.rate_floor);
         if let Some(inverse) = sums.regressors.invert(config.independence_floor).filter(|_| moving) {
-            let correction = inverse.times(sums.misfit);
+            let correction = inverse.times(sums.residual);
             if correction.is_finite() {
                 return Self { correction, inverse, flags: Flags::empty() };
             }
         }
-        let stiffness = sums.misfit.stiffness / sums.regressors.xx;
+        let stiffness = sums.residual.stiffness / sums.regressors.xx;
         if sums.regressors.xx > 0.0 && stiffness.is_finite() {
             return Self {
                 correction: Impedance { stiffness, damping: 0.0 },
@@ -55,10 +55,10 @@ impl Solution {
     }
 
     /// Mean square of the residual that the solution leaves.
-    pub fn residual_variance(&self, sums: &Sums, samples: f32) -> f32 {
+    pub fn residual_variance(&self, sums: &SecondOrderSums, samples: f32) -> f32 {
         let explained =
-            self.correction.stiffness * sums.misfit.stiffness + self.correction.damping * sums.misfit.damping;
-        let left = sums.misfit_energy - explained;
+            self.correction.stiffness * sums.residual.stiffness + self.correction.damping * sums.residual.damping;
+        let left = sums.residual_energy - explained;
         if left > 0.0 { left / larger(samples - 2.0, 1.0) } else { 0.0 }
     }
 }

@@ -15,18 +15,18 @@
 
 use crate::block::config::BlockConfig;
 use crate::block::second_order::Moments;
-use crate::block::window_sums::{Local, Memory};
+use crate::block::window_sums::{CentredMoments, WindowSums};
 use crate::contact::{Impedance, Observation};
 use crate::window::Recent;
 
 /// Entries of a chunk, at most.
-const ENTRIES: u32 = 10;
+const MAX_ENTRIES: u32 = 10;
 
 /// Chunks in a window, at most.
-const CHUNKS: u32 = 16;
+const MAX_CHUNKS: u32 = 16;
 
 /// The window below which everything is summed anew at every update, which costs less there.
-const SHORTEST: u32 = 16;
+const MIN_WINDOW: u32 = 16;
 
 /// How a window is divided; all zero where it is not.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -44,11 +44,11 @@ impl Division {
     /// The smallest chunks that are no more in number than a chunk has samples, nor than there is room for.
     fn of(window: u16) -> Self {
         let window = u32::from(window);
-        let room = |chunk: u32| chunk * chunk.min(CHUNKS) >= window;
-        let (group, groups) = match (2..=ENTRIES).find(|groups| room(2 * groups)) {
-            _ if window < SHORTEST => (0, 0),
+        let room = |chunk: u32| chunk * chunk.min(MAX_CHUNKS) >= window;
+        let (group, groups) = match (2..=MAX_ENTRIES).find(|groups| room(2 * groups)) {
+            _ if window < MIN_WINDOW => (0, 0),
             Some(groups) => (2, groups),
-            None => (2 * window.div_ceil(2 * ENTRIES * CHUNKS), ENTRIES),
+            None => (2 * window.div_ceil(2 * MAX_ENTRIES * MAX_CHUNKS), MAX_ENTRIES),
         };
         Self { window, group, groups, chunk: group * groups }
     }
@@ -56,7 +56,7 @@ impl Division {
 
 /// What is remembered of a window by a law that sums moments `M`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Queue<M> {
+pub struct TwoStackAggregate<M> {
     division: Division,
     /// Samples in the window.
     fill: u32,
@@ -69,9 +69,9 @@ pub struct Queue<M> {
     after: M,
     /// The next chunk from its end on, as far as it has been summed.
     suffix: M,
-    entries: [M; ENTRIES as usize],
+    entries: [M; MAX_ENTRIES as usize],
     /// A ring, the next chunk to be drained at `head`.
-    chunks: [M; CHUNKS as usize],
+    chunks: [M; MAX_CHUNKS as usize],
     /// Samples in `front`.
     newest: u32,
     /// Samples of the oldest chunk that have left.
@@ -90,10 +90,10 @@ pub struct Queue<M> {
 }
 
 fn slot(index: u32) -> usize {
-    (index % CHUNKS) as usize
+    (index % MAX_CHUNKS) as usize
 }
 
-impl<M: Moments> Queue<M> {
+impl<M: Moments> TwoStackAggregate<M> {
     /// A window of `division` in which nothing but emptiness has passed for so long that `coming` samples later it is as full
     /// of it as it can be.
     fn begin(&mut self, division: Division, centre: Impedance, coming: u32) {
@@ -110,7 +110,7 @@ impl<M: Moments> Queue<M> {
     /// A window that was not followed sample by sample: all of it, about `centre`.
     #[cold]
     #[inline(never)]
-    fn anew(&mut self, config: &BlockConfig, recent: Recent<'_>, centre: Impedance) {
+    fn rebuild(&mut self, config: &BlockConfig, recent: Recent<'_>, centre: Impedance) {
         if self.fill > 0 {
             *self = Self::default();
         }
@@ -144,7 +144,7 @@ impl<M: Moments> Queue<M> {
         if self.newest == self.division.chunk {
             self.complete();
         }
-        self.front = self.front.with(&M::of(o, o.misfit(self.centre)));
+        self.front = self.front.with(&M::of(o, o.residual(self.centre)));
         self.newest += 1;
     }
 
@@ -193,7 +193,7 @@ impl<M: Moments> Queue<M> {
             self.centre = self.next_centre;
             self.turning = false;
         }
-        self.head = (self.head + 1) % CHUNKS;
+        self.head = (self.head + 1) % MAX_CHUNKS;
         self.stacked -= 1;
         if self.stacked > 0 {
             if let Some(stack) = self.chunks.get(slot(self.head)) {
@@ -227,7 +227,7 @@ impl<M: Moments> Queue<M> {
         let mut suffix = if self.drained == 1 { M::default() } else { self.suffix };
         let ahead = self.division.window - 2 * (self.division.chunk - self.drained);
         for o in recent.pair_before_newest(ahead as usize + later) {
-            suffix = suffix.with(&M::of(&o, o.misfit(self.next_centre)));
+            suffix = suffix.with(&M::of(&o, o.residual(self.next_centre)));
         }
         self.suffix = suffix;
         if self.single == 1 {
@@ -266,14 +266,14 @@ impl<M: Moments> Queue<M> {
     }
 }
 
-impl<M: Moments> Memory for Queue<M> {
-    type Local = M;
+impl<M: Moments> WindowSums for TwoStackAggregate<M> {
+    type CentredMoments = M;
 
     #[inline(always)]
-    fn follow(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
+    fn push(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
         let expected = if self.fill < self.division.window { self.fill + 1 } else { self.fill };
         if self.fill == 0 || recent.len() != expected as usize {
-            self.anew(config, recent, estimate);
+            self.rebuild(config, recent, estimate);
             return;
         }
         self.fill = expected;
@@ -285,11 +285,11 @@ impl<M: Moments> Memory for Queue<M> {
     }
 
     #[inline(always)]
-    fn local(&self, recent: Recent<'_>, estimate: Impedance) -> Local<M> {
+    fn centred_moments(&self, recent: Recent<'_>, estimate: Impedance) -> CentredMoments<M> {
         if self.division.group == 0 {
             let mut sums = M::default();
-            recent.for_each(|o| sums = sums.with(&M::of(o, o.misfit(estimate))));
-            return Local { centre: estimate, moments: sums };
+            recent.for_each(|o| sums = sums.with(&M::of(o, o.residual(estimate))));
+            return CentredMoments { centre: estimate, moments: sums };
         }
         let mut sums = self.front.with(&self.middle);
         if let Some(entry) = self.entry() {
@@ -298,16 +298,16 @@ impl<M: Moments> Memory for Queue<M> {
         // Those of them that are not from before the window began to fill.
         for index in 0..(self.single + self.fill).saturating_sub(self.division.window) {
             let o = recent.after_oldest(index as usize).unwrap_or_default();
-            sums = sums.with(&M::of(&o, o.misfit(self.centre)));
+            sums = sums.with(&M::of(&o, o.residual(self.centre)));
         }
-        Local { centre: self.centre, moments: sums }
+        CentredMoments { centre: self.centre, moments: sums }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::block::second_order::Sums;
+    use crate::block::second_order::SecondOrderSums;
     use crate::window::Window;
 
     /// Small whole numbers, whose sums are exact in whatever order.
@@ -320,7 +320,7 @@ mod tests {
     fn follows(window: u16, known: u16, count: u16) {
         const RING: usize = 2100;
         let config = BlockConfig { window, minimum_fill: 2, ..BlockConfig::default() };
-        let (mut ring, mut queue) = (Window::<RING>::new(), Queue::<Sums>::default());
+        let (mut ring, mut queue) = (Window::<RING>::new(), TwoStackAggregate::<SecondOrderSums>::default());
         for k in 0..known + count {
             ring.push(whole(k));
             if k < known {
@@ -329,9 +329,9 @@ mod tests {
             let recent = ring.recent().last(window.into());
             // Whole numbers as well, so that every change of the centre is exact.
             let estimate = Impedance { stiffness: f32::from(k % 3), damping: f32::from(k % 2) };
-            queue.follow(&config, recent, estimate);
-            let Local { centre, moments } = queue.local(recent, estimate);
-            assert_eq!(moments, Sums::over(recent, centre), "window {window}, {known} known, update {k}");
+            queue.push(&config, recent, estimate);
+            let CentredMoments { centre, moments } = queue.centred_moments(recent, estimate);
+            assert_eq!(moments, SecondOrderSums::over(recent, centre), "window {window}, {known} known, update {k}");
         }
     }
 
@@ -350,12 +350,12 @@ mod tests {
 
     #[test]
     fn every_window_is_divided_into_what_there_is_room_for() {
-        for window in SHORTEST as u16..=u16::MAX {
+        for window in MIN_WINDOW as u16..=u16::MAX {
             let Division { group, groups, .. } = Division::of(window);
             let chunk = group * groups;
-            assert!(group >= 2 && group.is_multiple_of(2) && (2..=ENTRIES).contains(&groups), "{window}");
+            assert!(group >= 2 && group.is_multiple_of(2) && (2..=MAX_ENTRIES).contains(&groups), "{window}");
             let chunks = u32::from(window).div_ceil(chunk);
-            assert!(chunks <= CHUNKS && chunks <= chunk && 2 * chunk < u32::from(window), "{window}");
+            assert!(chunks <= MAX_CHUNKS && chunks <= chunk && 2 * chunk < u32::from(window), "{window}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The contact gate: is the tool in the surface?
+//! Contact detection: thresholds of force with hysteresis.
 
 use crate::error::{ConfigError, require, require_not_negative};
 #[cfg(feature = "serde")]
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// below `off_force` or outside the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
-pub struct GateConfig {
+pub struct ContactDetectorConfig {
     /// Force that begins a contact, about 2.5 standard deviations of the sensor's noise or more [N or N m].
     pub on_force: f32,
     /// Force below which a sample counts as away, at most `on_force` [N or N m].
@@ -22,33 +22,33 @@ pub struct GateConfig {
 
 /// The contact, and for how long it has been slipping away.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct GateState {
+pub struct ContactDetectorState {
     closed: bool,
     away: u16,
 }
 
-impl GateConfig {
+impl ContactDetectorConfig {
     /// For the paper's bench: 0.2 N on, 0.05 N off for 5 samples.
     pub const BENCH: Self = Self { on_force: 0.2, off_force: 0.05, off_samples: 5 };
 
     pub(crate) fn check(self) -> Result<(), ConfigError> {
-        require_not_negative(self.off_force, "gate.off_force")?;
+        require_not_negative(self.off_force, "contact_detector.off_force")?;
         require(
             self.on_force.is_finite() && self.on_force >= self.off_force,
-            "gate.on_force",
-            "a finite force, at least gate.off_force",
+            "contact_detector.on_force",
+            "a finite force, at least contact_detector.off_force",
         )?;
-        require(self.off_samples > 0, "gate.off_samples", "at least 1")
+        require(self.off_samples > 0, "contact_detector.off_samples", "at least 1")
     }
 
     /// Takes the penetration and force of one sample, in the unit of the thresholds; whether the tool is in contact.
-    pub fn update(self, state: &mut GateState, penetration: f32, force: f32) -> bool {
+    pub fn update(self, state: &mut ContactDetectorState, penetration: f32, force: f32) -> bool {
         if state.closed {
             let away = force < self.off_force || penetration < 0.0;
             state.away = if away { state.away.saturating_add(1) } else { 0 };
             state.closed = state.away < self.off_samples;
         } else if force > self.on_force && penetration >= 0.0 {
-            *state = GateState { closed: true, away: 0 };
+            *state = ContactDetectorState { closed: true, away: 0 };
         }
         state.closed
     }
@@ -60,15 +60,15 @@ mod tests {
 
     #[test]
     fn noise_neither_begins_nor_ends_a_contact() {
-        let (gate, mut state) = (GateConfig::BENCH, GateState::default());
-        assert!(!gate.update(&mut state, 0.01, 0.2), "on is above the threshold, not at it");
-        assert!(!gate.update(&mut state, -0.001, 5.0), "a push outside the surface is not contact");
-        assert!(gate.update(&mut state, 0.0, 0.21));
+        let (detector, mut state) = (ContactDetectorConfig::BENCH, ContactDetectorState::default());
+        assert!(!detector.update(&mut state, 0.01, 0.2), "on is above the threshold, not at it");
+        assert!(!detector.update(&mut state, -0.001, 5.0), "a push outside the surface is not contact");
+        assert!(detector.update(&mut state, 0.0, 0.21));
         for _ in 0..4 {
-            assert!(gate.update(&mut state, 0.001, 0.0), "four samples away are a flicker");
+            assert!(detector.update(&mut state, 0.001, 0.0), "four samples away are a flicker");
         }
-        assert!(gate.update(&mut state, 0.001, 0.06), "and one above the lower threshold forgives them");
-        let left: usize = (0..5).map(|_| usize::from(!gate.update(&mut state, -0.001, 1.0))).sum();
+        assert!(detector.update(&mut state, 0.001, 0.06), "and one above the lower threshold forgives them");
+        let left: usize = (0..5).map(|_| usize::from(!detector.update(&mut state, -0.001, 1.0))).sum();
         assert_eq!(left, 1, "the fifth sample outside the surface ends it");
     }
 }

@@ -6,7 +6,7 @@ use crate::front_end::units::Units;
 use serde::{Deserialize, Serialize};
 
 /// Most parameters of a contact law.
-pub const MOST_PARAMETERS: usize = 3;
+pub const MAX_PARAMETERS: usize = 3;
 
 /// Which columns a row of the regression has. x: penetration, v: its rate, a: the tool's acceleration, F: measured force.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +57,7 @@ impl ContactModel {
     }
 
     /// One internal unit of each parameter, in SI; 1 for those that it has not.
-    pub fn units(self, units: Units) -> [f32; MOST_PARAMETERS] {
+    pub fn units(self, units: Units) -> [f32; MAX_PARAMETERS] {
         let (k, b) = (units.force / units.penetration, units.force / units.rate);
         match self {
             Self::KelvinVoigt => [k, b, 1.0],
@@ -74,7 +74,7 @@ impl ContactModel {
     /// The columns between two depths that are `elapsed` seconds apart, not yet filtered. `way` is what a depth gained in a
     /// second makes of the rate in internal units. Products of depth and rate are differences of powers of the depth, so that the
     /// mean over the interval is exact.
-    pub(crate) fn columns(self, before: f32, now: f32, elapsed: f32, to_rate: f32) -> [f32; MOST_PARAMETERS] {
+    pub(crate) fn columns(self, before: f32, now: f32, elapsed: f32, to_rate: f32) -> [f32; MAX_PARAMETERS] {
         let slope = |from: f32, to: f32| (to - from) / elapsed * to_rate;
         let (x, v) = (0.5 * (before + now), slope(before, now));
         match self {
@@ -93,7 +93,7 @@ impl ContactModel {
 
 /// Where the surface lies, counted from where it was said to lie, positive into the environment: `-c / K` of the parameters of
 /// [`ContactModel::BiasedKelvinVoigt`]. Not finite where K is zero.
-pub fn contact_plane(parameters: [f32; MOST_PARAMETERS]) -> f32 {
+pub fn contact_plane(parameters: [f32; MAX_PARAMETERS]) -> f32 {
     let [stiffness, _, constant] = parameters;
     -constant / stiffness
 }

@@ -2,16 +2,16 @@
 
 use crate::contact::{Observation, Sample};
 use crate::error::ConfigError;
-use crate::front_end::contact_model::{ContactModel, MOST_PARAMETERS};
+use crate::front_end::contact_model::{ContactModel, MAX_PARAMETERS};
 use crate::front_end::low_pass::{LowPass, LowPassState};
 use crate::front_end::samples::{FrontEnd, FrontEndConfig, FrontEndState, Rejection};
 use crate::math::larger;
 
 /// One row, in internal units.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Row {
+pub struct RegressionRow {
     /// The columns; zero beyond those of the model.
-    pub regressor: [f32; MOST_PARAMETERS],
+    pub regressor: [f32; MAX_PARAMETERS],
     /// The force that they explain.
     pub force: f32,
     /// The tool is in the surface.
@@ -20,8 +20,8 @@ pub struct Row {
     pub restarted: bool,
 }
 
-impl Row {
-    /// The row of a law of two parameters, for any [`crate::Law`]: K stands in the place of the stiffness, B of the damping.
+impl RegressionRow {
+    /// The row of a law of two parameters, for any [`crate::UpdateLaw`]: K stands in the place of the stiffness, B of the damping.
     pub fn observation(&self) -> Observation {
         let [penetration, rate, _] = self.regressor;
         Observation { penetration, rate, force: self.force }
@@ -44,24 +44,24 @@ pub struct ModelStream {
     filter: LowPass,
     to_rate: f32,
     state: FrontEndState,
-    columns: [LowPassState; MOST_PARAMETERS],
+    columns: [LowPassState; MAX_PARAMETERS],
     force: LowPassState,
-    before: Option<Before>,
-    /// The last row before the filters, and the rate of the tool itself, where there are any.
-    raw: Option<Raw>,
-    fresh: bool,
+    previous: Option<PreviousSample>,
+    /// The last row previous the filters, and the rate of the tool itself, where there are any.
+    unfiltered: Option<UnfilteredRow>,
+    filters_empty: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Before {
+struct PreviousSample {
     /// Depth below the surface, negative outside, internal units.
     penetration: f32,
     force: f32,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Raw {
-    columns: [f32; MOST_PARAMETERS],
+struct UnfilteredRow {
+    columns: [f32; MAX_PARAMETERS],
     force: f32,
     rate: f32,
 }
@@ -81,9 +81,9 @@ impl ModelStream {
             state: FrontEndState::default(),
             columns: Default::default(),
             force: LowPassState::default(),
-            before: None,
-            raw: None,
-            fresh: true,
+            previous: None,
+            unfiltered: None,
+            filters_empty: true,
         })
     }
 
@@ -101,55 +101,60 @@ impl ModelStream {
     ///
     /// # Errors
     /// Why it was rejected; then nothing but the clock has moved.
-    pub fn update(&mut self, sample: Sample) -> Result<Row, Rejection> {
+    pub fn update(&mut self, sample: Sample) -> Result<RegressionRow, Rejection> {
         let reading = self.front_end.update(&mut self.state, sample)?;
         let config = self.front_end.config();
         let gap = (sample.elapsed - config.period).abs() > 0.1 * config.period;
-        let now = Before {
+        let now = PreviousSample {
             penetration: (sample.position - config.surface) / config.units.penetration,
             force: sample.force / config.units.force,
         };
-        let before = self.before.replace(now);
-        let (Some(before), false) = (before, reading.restarted || gap) else {
-            (self.raw, self.fresh) = (None, true);
-            return Ok(Row { contact: reading.contact, restarted: true, ..Row::default() });
+        let previous = self.previous.replace(now);
+        let (Some(previous), false) = (previous, reading.restarted || gap) else {
+            (self.unfiltered, self.filters_empty) = (None, true);
+            return Ok(RegressionRow { contact: reading.contact, restarted: true, ..RegressionRow::default() });
         };
-        let raw = self.raw_row(&before, &now, sample.elapsed);
-        let last = self.raw.replace(raw);
+        let unfiltered = self.raw_row(&previous, &now, sample.elapsed);
+        let last = self.unfiltered.replace(unfiltered);
         let aligned = match (self.model, last) {
-            (ContactModel::ToolMass, Some(last)) => Some(with_acceleration(&last, &raw, sample.elapsed)),
+            (ContactModel::ToolMass, Some(last)) => Some(with_acceleration(&last, &unfiltered, sample.elapsed)),
             (ContactModel::ToolMass, None) => None,
-            _ => Some(raw),
+            _ => Some(unfiltered),
         };
         let Some(aligned) = aligned else {
-            return Ok(Row { contact: reading.contact, restarted: true, ..Row::default() });
+            return Ok(RegressionRow { contact: reading.contact, restarted: true, ..RegressionRow::default() });
         };
         Ok(self.filtered(&aligned, reading.contact))
     }
 
-    fn raw_row(&self, before: &Before, now: &Before, elapsed: f32) -> Raw {
+    fn raw_row(&self, previous: &PreviousSample, now: &PreviousSample, elapsed: f32) -> UnfilteredRow {
         let inside = |x: f32| if self.front_end.config().bilateral { x } else { larger(x, 0.0) };
-        let columns = self.model.columns(inside(before.penetration), inside(now.penetration), elapsed, self.to_rate);
-        let rate = (now.penetration - before.penetration) / elapsed * self.to_rate;
-        Raw { columns, force: 0.5 * (before.force + now.force), rate }
+        let columns = self.model.columns(inside(previous.penetration), inside(now.penetration), elapsed, self.to_rate);
+        let rate = (now.penetration - previous.penetration) / elapsed * self.to_rate;
+        UnfilteredRow { columns, force: 0.5 * (previous.force + now.force), rate }
     }
 
-    fn filtered(&mut self, raw: &Raw, contact: bool) -> Row {
-        if core::mem::take(&mut self.fresh) {
-            self.columns = raw.columns.map(LowPassState::at_rest);
-            self.force = LowPassState::at_rest(raw.force);
+    fn filtered(&mut self, unfiltered: &UnfilteredRow, contact: bool) -> RegressionRow {
+        if core::mem::take(&mut self.filters_empty) {
+            self.columns = unfiltered.columns.map(LowPassState::at_rest);
+            self.force = LowPassState::at_rest(unfiltered.force);
         }
-        let mut regressor = raw.columns;
+        let mut regressor = unfiltered.columns;
         for (column, state) in regressor.iter_mut().zip(&mut self.columns) {
             *column = self.filter.update(state, *column);
         }
-        Row { regressor, force: self.filter.update(&mut self.force, raw.force), contact, restarted: false }
+        RegressionRow {
+            regressor,
+            force: self.filter.update(&mut self.force, unfiltered.force),
+            contact,
+            restarted: false,
+        }
     }
 }
 
 /// The mean of two rows and the acceleration between them: all three belong to the instant that they share.
-fn with_acceleration(last: &Raw, raw: &Raw, elapsed: f32) -> Raw {
-    let ([x0, v0, _], [x1, v1, _]) = (last.columns, raw.columns);
-    let columns = [0.5 * (x0 + x1), 0.5 * (v0 + v1), (raw.rate - last.rate) / elapsed];
-    Raw { columns, force: 0.5 * (last.force + raw.force), rate: raw.rate }
+fn with_acceleration(last: &UnfilteredRow, unfiltered: &UnfilteredRow, elapsed: f32) -> UnfilteredRow {
+    let ([x0, v0, _], [x1, v1, _]) = (last.columns, unfiltered.columns);
+    let columns = [0.5 * (x0 + x1), 0.5 * (v0 + v1), (unfiltered.rate - last.rate) / elapsed];
+    UnfilteredRow { columns, force: 0.5 * (last.force + unfiltered.force), rate: unfiltered.rate }
 }

@@ -2,7 +2,7 @@
 
 use crate::contact::{Observation, Sample};
 use crate::error::{ConfigError, require, require_positive};
-use crate::front_end::contact_detector::{GateConfig, GateState};
+use crate::front_end::contact_detector::{ContactDetectorConfig, ContactDetectorState};
 use crate::front_end::low_pass::{LowPass, LowPassState};
 use crate::front_end::units::Units;
 use crate::math::larger;
@@ -13,12 +13,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub enum Velocity {
-    /// As the paper: the difference of the position, low-passed; position and force stay raw. The filter delays the
+    /// As the paper: the difference of the position, low-passed; position and force stay unfiltered_row. The filter delays the
     /// rate against the force, which biases B: measured on K = 300 N/m with a cut-off of 20 Hz, by -5 % at a motion of
     /// 5 Hz, -26 % at 10 Hz, -60 % at 15 Hz.
     Paper,
     /// Penetration, rate and force pass the same filter, so the filter cancels from `F = K x + B v`. Penetration and
-    /// force enter as the mean of two samples, for the difference belongs to the instant half-way between them.
+    /// force enter as the mean of two samples, for the difference belongs to the instant half-displacement between them.
     #[default]
     Matched,
 }
@@ -35,10 +35,10 @@ pub struct FrontEndConfig {
     pub cutoff: f32,
     /// How the rate is had.
     pub velocity: Velocity,
-    /// Glued or clamped: force both ways, always in contact, and the gate is not asked.
+    /// Glued or clamped: force both ways, always in contact, and the contact_detector is not asked.
     pub bilateral: bool,
     /// Contact thresholds.
-    pub gate: GateConfig,
+    pub contact_detector: ContactDetectorConfig,
     /// Internal units.
     pub units: Units,
 }
@@ -51,7 +51,7 @@ impl FrontEndConfig {
         cutoff: 20.0,
         velocity: Velocity::Matched,
         bilateral: false,
-        gate: GateConfig::BENCH,
+        contact_detector: ContactDetectorConfig::BENCH,
         units: Units::SI,
     };
 }
@@ -72,7 +72,7 @@ pub enum Field {
 pub enum Rejection {
     /// NaN or infinite.
     NotFinite(Field),
-    /// Beyond [`FrontEnd::RANGE`] internal units, or a time that does not advance.
+    /// Beyond [`FrontEnd::MAX_MAGNITUDE`] internal units, or a time that does not advance.
     OutOfRange(Field),
 }
 
@@ -93,8 +93,8 @@ pub struct Reading {
 pub struct FrontEnd {
     config: FrontEndConfig,
     nominal: LowPass,
-    /// `config.gate` in internal units.
-    gate: GateConfig,
+    /// `config.contact_detector` in internal units.
+    contact_detector: ContactDetectorConfig,
     /// Factors from SI to internal: of position, of force, and of internal penetration over seconds.
     to_penetration: f32,
     to_force: f32,
@@ -103,7 +103,7 @@ pub struct FrontEnd {
 
 /// A sample as the next one needs it, in internal units.
 #[derive(Debug, Clone, Copy)]
-struct Before {
+struct PreviousSample {
     /// Depth below the surface, negative outside.
     penetration: f32,
     /// The same, zero outside unless the contact is bilateral.
@@ -111,28 +111,28 @@ struct Before {
     force: f32,
 }
 
-/// Filters, gate and the sample before.
+/// Filters, contact_detector and the sample previous.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FrontEndState {
-    before: Option<Before>,
+    previous: Option<PreviousSample>,
     /// The filters have taken no input since they began anew.
-    fresh: bool,
+    filters_empty: bool,
     skipped: f32,
     penetration: LowPassState,
     rate: LowPassState,
     force: LowPassState,
-    gate: GateState,
+    contact_detector: ContactDetectorState,
 }
 
 impl FrontEnd {
     /// Largest magnitude of position, force and rate, in internal units: its fourth power is far from overflow.
-    pub const RANGE: f32 = 1e6;
+    pub const MAX_MAGNITUDE: f32 = 1e6;
 
     /// Rate, in internal units, that is no movement by any measure.
-    const STILL: f32 = 1e-20;
+    const MIN_RATE: f32 = 1e-20;
 
     /// A period within this share of the nominal one is the nominal one (written times are rounded).
-    const SAME_PERIOD: f32 = 1e-4;
+    const PERIOD_TOLERANCE: f32 = 1e-4;
 
     /// Checks the settings.
     ///
@@ -145,16 +145,16 @@ impl FrontEnd {
         require(cycles <= LowPass::LIMIT, "cutoff", "a cut-off of at most 0.4 over the sample period")?;
         require(cycles >= 1e-6, "cutoff", "a cut-off of at least 1e-6 over the sample period")?;
         require(config.surface.is_finite(), "surface", "a finite position")?;
-        config.gate.check()?;
+        config.contact_detector.check()?;
         config.units.check()?;
         let units = config.units;
         Ok(Self {
             config,
             nominal: LowPass::new(cycles),
-            gate: GateConfig {
-                on_force: config.gate.on_force / units.force,
-                off_force: config.gate.off_force / units.force,
-                ..config.gate
+            contact_detector: ContactDetectorConfig {
+                on_force: config.contact_detector.on_force / units.force,
+                off_force: config.contact_detector.off_force / units.force,
+                ..config.contact_detector
             },
             to_penetration: 1.0 / units.penetration,
             to_force: 1.0 / units.force,
@@ -177,57 +177,58 @@ impl FrontEnd {
     /// Takes one sample.
     ///
     /// # Errors
-    /// Why it was rejected; then the state is as before, but for the clock.
+    /// Why it was rejected; then the state is as previous, but for the clock.
     pub fn update(&self, state: &mut FrontEndState, sample: Sample) -> Result<Reading, Rejection> {
-        let (penetration, force) = self.admit(&sample).inspect_err(|_| {
+        let (penetration, force) = self.validated(&sample).inspect_err(|_| {
             if sample.elapsed.is_finite() && sample.elapsed > 0.0 {
                 state.skipped += sample.elapsed;
             }
         })?;
         let elapsed = sample.elapsed + state.skipped;
         state.skipped = 0.0;
-        let contact = self.config.bilateral || self.gate.update(&mut state.gate, penetration, force);
+        let contact =
+            self.config.bilateral || self.contact_detector.update(&mut state.contact_detector, penetration, force);
         let depth = if self.config.bilateral { penetration } else { larger(penetration, 0.0) };
-        let now = Before { penetration, depth, force };
-        let (Some(before), Some(filter)) = (state.before.replace(now), self.filter_for(elapsed)) else {
-            state.fresh = true;
+        let now = PreviousSample { penetration, depth, force };
+        let (Some(previous), Some(filter)) = (state.previous.replace(now), self.filter_for(elapsed)) else {
+            state.filters_empty = true;
             let observation = Observation { penetration: depth, rate: 0.0, force };
             return Ok(Reading { observation, contact, restarted: true });
         };
-        let raw = self.raw(&before, &now, elapsed);
-        if state.fresh {
-            state.begin(&raw);
+        let unfiltered_row = self.unfiltered_row(&previous, &now, elapsed);
+        if state.filters_empty {
+            state.start_filters(&unfiltered_row);
         }
-        let rate = filter.update(&mut state.rate, raw.rate);
+        let rate = filter.update(&mut state.rate, unfiltered_row.rate);
         // The rate of a held tool dies away for ever: below this it is zero, and not a subnormal that stalls a host.
-        let rate = if rate.abs() < Self::STILL { 0.0 } else { rate };
+        let rate = if rate.abs() < Self::MIN_RATE { 0.0 } else { rate };
         let observation = match self.config.velocity {
             Velocity::Paper => Observation { penetration: depth, rate, force },
             Velocity::Matched => Observation {
-                penetration: filter.update(&mut state.penetration, raw.penetration),
+                penetration: filter.update(&mut state.penetration, unfiltered_row.penetration),
                 rate,
-                force: filter.update(&mut state.force, raw.force),
+                force: filter.update(&mut state.force, unfiltered_row.force),
             },
         };
         Ok(Reading { observation, contact, restarted: false })
     }
 
     /// The row between two samples, not yet filtered: means and the difference, which belong to one instant.
-    fn raw(&self, before: &Before, now: &Before, elapsed: f32) -> Observation {
-        let way = match self.config.velocity {
-            Velocity::Paper => now.penetration - before.penetration,
-            Velocity::Matched => now.depth - before.depth,
+    fn unfiltered_row(&self, previous: &PreviousSample, now: &PreviousSample, elapsed: f32) -> Observation {
+        let displacement = match self.config.velocity {
+            Velocity::Paper => now.penetration - previous.penetration,
+            Velocity::Matched => now.depth - previous.depth,
         };
-        let rate = way / elapsed * self.to_rate;
+        let rate = displacement / elapsed * self.to_rate;
         Observation {
-            penetration: 0.5 * (now.depth + before.depth),
-            rate: rate.clamp(-Self::RANGE, Self::RANGE),
-            force: 0.5 * (now.force + before.force),
+            penetration: 0.5 * (now.depth + previous.depth),
+            rate: rate.clamp(-Self::MAX_MAGNITUDE, Self::MAX_MAGNITUDE),
+            force: 0.5 * (now.force + previous.force),
         }
     }
 
     /// Penetration and force in internal units.
-    fn admit(&self, sample: &Sample) -> Result<(f32, f32), Rejection> {
+    fn validated(&self, sample: &Sample) -> Result<(f32, f32), Rejection> {
         let fields =
             [(sample.position, Field::Position), (sample.force, Field::Force), (sample.elapsed, Field::Elapsed)];
         if let Some((_, field)) = fields.into_iter().find(|(value, _)| !value.is_finite()) {
@@ -235,9 +236,9 @@ impl FrontEnd {
         }
         let penetration = (sample.position - self.config.surface) * self.to_penetration;
         let force = sample.force * self.to_force;
-        if penetration.abs() > Self::RANGE {
+        if penetration.abs() > Self::MAX_MAGNITUDE {
             Err(Rejection::OutOfRange(Field::Position))
-        } else if force.abs() > Self::RANGE {
+        } else if force.abs() > Self::MAX_MAGNITUDE {
             Err(Rejection::OutOfRange(Field::Force))
         } else if sample.elapsed <= 0.0 {
             Err(Rejection::OutOfRange(Field::Elapsed))
@@ -249,7 +250,7 @@ impl FrontEnd {
     /// The filter for a step of `elapsed` seconds; `None` where the step is a gap that no filter can bridge.
     fn filter_for(&self, elapsed: f32) -> Option<LowPass> {
         let period = self.config.period;
-        if (elapsed - period).abs() <= Self::SAME_PERIOD * period {
+        if (elapsed - period).abs() <= Self::PERIOD_TOLERANCE * period {
             return Some(self.nominal);
         }
         let cycles = self.config.cutoff * elapsed;
@@ -259,11 +260,11 @@ impl FrontEnd {
 
 impl FrontEndState {
     /// Filters at rest in the first row whose rate is known. The model holds between their states from then on, so a tool
-    /// that is on its way makes no transient; what stays for a settling time is the noise of this one row.
-    fn begin(&mut self, row: &Observation) {
+    /// that is on its displacement makes no transient; what stays for a settling time is the noise of this one row.
+    fn start_filters(&mut self, row: &Observation) {
         self.penetration = LowPassState::at_rest(row.penetration);
         self.rate = LowPassState::at_rest(row.rate);
         self.force = LowPassState::at_rest(row.force);
-        self.fresh = false;
+        self.filters_empty = false;
     }
 }

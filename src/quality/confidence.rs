@@ -6,7 +6,7 @@ use crate::math::sym2::Sym2;
 /// The parts of the uncertainty of one estimate, in internal units.
 ///
 /// The variance of the estimate is `c * noise`, c being the number of samples that one independent value of the noise is
-/// worth; beside it stand two errors that averaging does not reduce, `remainder` and `offset_gain` times the force that a
+/// worth; beside it stand two errors that averaging does not reduce, `startup_bias` and `offset_gain` times the force that a
 /// misplaced surface makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Confidence {
@@ -16,7 +16,7 @@ pub struct Confidence {
     pub noise_gain: Sym2,
     /// How far the estimate still is from what it moves towards: what is left of the start in a recursive law, the way
     /// still to go of a descent.
-    pub remainder: Impedance,
+    pub startup_bias: Impedance,
     /// Change of the estimate for a constant force of one unit.
     pub offset_gain: Impedance,
     /// Samples that the estimate rests on, by weight.
@@ -28,7 +28,7 @@ impl Confidence {
     pub const NONE: Self = Self {
         noise: Sym2::UNKNOWN,
         noise_gain: Sym2::UNKNOWN,
-        remainder: Impedance::ZERO,
+        startup_bias: Impedance::ZERO,
         offset_gain: Impedance::ZERO,
         samples: 0.0,
     };

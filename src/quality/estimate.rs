@@ -48,7 +48,7 @@ impl Estimate {
 /// What the sensors cannot resolve, in SI; zero where it is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
-pub struct Sensors {
+pub struct SensorResolution {
     /// One count of the position sensor [m or rad].
     pub position_resolution: f32,
     /// Standard deviation of the force sensor's noise, its rounding included [N or N m]. Where it is given, a window too
@@ -56,7 +56,7 @@ pub struct Sensors {
     pub force_noise: f32,
 }
 
-impl Sensors {
+impl SensorResolution {
     pub(crate) fn check(self) -> Result<(), ConfigError> {
         require_not_negative(self.position_resolution, "sensors.position_resolution")?;
         require_not_negative(self.force_noise, "sensors.force_noise")
@@ -65,15 +65,15 @@ impl Sensors {
 
 /// Turns what a law found into an [`Estimate`]: internal to SI, confidence to intervals.
 ///
-/// The half-width is `sqrt(t^2 variance + (0.95 offset_gain K * half a count)^2) + |remainder|`, with the parts of
+/// The half-width is `sqrt(t^2 variance + (0.95 offset_gain K * half a count)^2) + |startup_bias|`, with the parts of
 /// [`crate::Confidence`]: the surface lies anywhere within a count, so 95 % of its places lie within 0.95 of half a count, and
 /// two independent errors add as squares. The residual is coloured by the filter, so n samples count as n over
 /// `correlated_samples`; t is Student's for that number less two, or for ten where the force noise is known beforehand; and
-/// the noise is never taken to be less than that of both sensors. It covers noise, rounding, start-up and a misplaced
+/// the noise is never taken to be less than that of both sensors. It covers noise, rounding, start-up and a surface_error
 /// surface; not the bias of a model, of [`crate::Velocity::Paper`], or of a motion of angular frequency w sampled every T
 /// seconds, (w T)^2 / 12 of B.
 #[derive(Debug, Clone, Copy)]
-pub struct Assessor {
+pub struct IntervalEstimator {
     /// One internal unit of K and of B.
     unit: Impedance,
     force_unit: f32,
@@ -83,17 +83,17 @@ pub struct Assessor {
     force_variance: f32,
 }
 
-impl Assessor {
+impl IntervalEstimator {
     /// Share of the value above which an interval is flagged.
-    const WIDE: f32 = 0.3;
+    const MAX_RELATIVE_HALF_WIDTH: f32 = 0.3;
 
     /// Share of half a count within which 95 % of the surfaces lie that are anywhere in it.
-    const PLACES: f32 = 0.95;
+    const SURFACE_COVERAGE: f32 = 0.95;
 
     /// Degrees of freedom that a force noise known beforehand is trusted for.
-    const KNOWN: f32 = 10.0;
+    const KNOWN_NOISE_FREEDOM: f32 = 10.0;
 
-    pub(crate) fn new(front_end: &FrontEnd, sensors: Sensors) -> Self {
+    pub(crate) fn new(front_end: &FrontEnd, sensors: SensorResolution) -> Self {
         let units = front_end.config().units;
         let position = sensors.position_resolution / units.penetration;
         let force = sensors.force_noise / units.force;
@@ -113,7 +113,7 @@ impl Assessor {
         let mut flags = step.flags;
         flags.set(Flags::FILLING, step.fill < 0.99);
         flags.set(Flags::NEGATIVE, step.estimate.stiffness < 0.0 || step.estimate.damping < 0.0);
-        let wide = |half_width: f32, value: f32| half_width > Self::WIDE * value.abs();
+        let wide = |half_width: f32, value: f32| half_width > Self::MAX_RELATIVE_HALF_WIDTH * value.abs();
         flags.set(Flags::STIFFNESS_UNCERTAIN, wide(half_width.stiffness, step.estimate.stiffness));
         flags.set(Flags::DAMPING_UNCERTAIN, wide(half_width.damping, step.estimate.damping));
         Estimate {
@@ -135,25 +135,29 @@ impl Assessor {
         let stiffness = step.estimate.stiffness;
         let known = self.force_variance + stiffness * stiffness * self.position_variance;
         let measured = c.samples / self.correlated_samples - 2.0;
-        let t = student(if self.force_variance > 0.0 { larger(measured, Self::KNOWN) } else { measured });
-        let surface = Self::PLACES * stiffness * self.half_count;
-        let width = |noise: f32, gain: f32, remainder: f32, offset: f32| {
+        let t = student_t_975(if self.force_variance > 0.0 {
+            larger(measured, Self::KNOWN_NOISE_FREEDOM)
+        } else {
+            measured
+        });
+        let surface = Self::SURFACE_COVERAGE * stiffness * self.half_count;
+        let width = |noise: f32, gain: f32, startup_bias: f32, offset: f32| {
             let variance = larger(noise * self.correlated_samples, known * gain);
             // Rounding may leave a variance of zero a trifle below it; NaN (nothing known) passes on.
             let variance = if variance < 0.0 { 0.0 } else { variance };
-            let misplaced = offset * surface;
-            let width = near_sqrt(t * t * variance + misplaced * misplaced) + remainder.abs();
+            let surface_error = offset * surface;
+            let width = near_sqrt(t * t * variance + surface_error * surface_error) + startup_bias.abs();
             if width.is_nan() { f32::INFINITY } else { width }
         };
         Impedance {
-            stiffness: width(c.noise.xx, c.noise_gain.xx, c.remainder.stiffness, c.offset_gain.stiffness),
-            damping: width(c.noise.vv, c.noise_gain.vv, c.remainder.damping, c.offset_gain.damping),
+            stiffness: width(c.noise.xx, c.noise_gain.xx, c.startup_bias.stiffness, c.offset_gain.stiffness),
+            damping: width(c.noise.vv, c.noise_gain.vv, c.startup_bias.damping, c.offset_gain.damping),
         }
     }
 }
 
 /// The 97.5 % point of Student's distribution within 4 %, infinite below one degree of freedom.
-fn student(freedom: f32) -> f32 {
+fn student_t_975(freedom: f32) -> f32 {
     if freedom >= 1.0 {
         let inverse = 1.0 / freedom;
         1.96 + inverse * (2.4 + inverse * (2.0 + inverse * 6.3))
@@ -171,10 +175,10 @@ mod tests {
         for (freedom, quantile) in
             [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (5.0, 2.571), (10.0, 2.228), (30.0, 2.042), (1e4, 1.960)]
         {
-            let error = student(freedom) / quantile - 1.0;
+            let error = student_t_975(freedom) / quantile - 1.0;
             assert!(error.abs() < 0.04, "{freedom}: {error}");
         }
-        assert_eq!(student(0.9), f32::INFINITY);
-        assert_eq!(student(f32::NAN), f32::INFINITY);
+        assert_eq!(student_t_975(0.9), f32::INFINITY);
+        assert_eq!(student_t_975(f32::NAN), f32::INFINITY);
     }
 }

@@ -7,8 +7,8 @@ use crate::quality::confidence::Confidence;
 use crate::quality::flags::Flags;
 use crate::quality::step::Step;
 
-/// Forgetting factor of what tells fill and excitation in a law that has none of its own: a memory of 300 samples.
-pub(crate) const MEMORY: f32 = 1.0 - 1.0 / 300.0;
+/// Forgetting factor of what tells fill and excitation in a law that has none of its own: a transition of 300 samples.
+pub(crate) const DEFAULT_FORGETTING: f32 = 1.0 - 1.0 / 300.0;
 
 /// Propagates the uncertainty of any law of the form `theta += gain * innovation`.
 ///
@@ -19,10 +19,10 @@ pub(crate) const MEMORY: f32 = 1.0 - 1.0 / 300.0;
 /// constant gain alike. M also tells the error at the start, from how far the estimate has come:
 /// `(I - M) error(0) = start - estimate`. No prior knowledge of the contact is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Propagation {
+pub struct UncertaintyPropagation {
     start: Impedance,
     /// M, by rows.
-    memory: [Impedance; 2],
+    transition: [Impedance; 2],
     noise: Sym2,
     noise_gain: Sym2,
     offset_gain: Impedance,
@@ -30,12 +30,12 @@ pub struct Propagation {
     weight: f32,
 }
 
-impl Propagation {
+impl UncertaintyPropagation {
     /// Before the first sample, with the estimate at `start`.
     pub const fn new(start: Impedance) -> Self {
         Self {
             start,
-            memory: [Impedance { stiffness: 1.0, damping: 0.0 }, Impedance { stiffness: 0.0, damping: 1.0 }],
+            transition: [Impedance { stiffness: 1.0, damping: 0.0 }, Impedance { stiffness: 0.0, damping: 1.0 }],
             noise: Sym2::ZERO,
             noise_gain: Sym2::ZERO,
             offset_gain: Impedance::ZERO,
@@ -57,7 +57,7 @@ impl Propagation {
         let square = innovation * innovation * (1.0 - x * gain.stiffness - v * gain.damping).abs();
         let next = Self {
             start: self.start,
-            memory: map.map(|row| combine(row, self.memory)),
+            transition: map.map(|row| combine(row, self.transition)),
             noise: congruence(map, self.noise).plus_outer(square, gain.stiffness, gain.damping),
             noise_gain: congruence(map, self.noise_gain).plus_outer(1.0, gain.stiffness, gain.damping),
             offset_gain: Impedance {
@@ -74,7 +74,7 @@ impl Propagation {
 
     /// By their sum, which is finite only where each is; and a sum beyond the range is as good as a sign of that.
     fn is_finite(&self) -> bool {
-        let [k, b] = self.memory;
+        let [k, b] = self.transition;
         let pairs = k.moved(1.0, b).moved(1.0, self.offset_gain);
         let total = |m: Sym2| m.xx + m.xv + m.vv;
         let sums = total(self.noise) + total(self.noise_gain) + total(self.regressors);
@@ -84,21 +84,21 @@ impl Propagation {
     /// The confidence in `estimate`, which the updates have led to.
     #[inline(always)]
     pub fn confidence(&self, estimate: Impedance) -> Confidence {
-        let [k, b] = self.memory;
-        // The error at the start is told from a noisy estimate, over I - M: so is its remainder.
+        let [k, b] = self.transition;
+        // The error at the start is told from a noisy estimate, over I - M: so is its startup_bias.
         let (k_told, b_told) = (1.0 / (1.0 - k.stiffness), 1.0 / (1.0 - b.damping));
         Confidence {
             noise: self.noise.stretched(k_told, b_told),
             noise_gain: self.noise_gain.stretched(k_told, b_told),
-            remainder: self.remainder(estimate),
+            startup_bias: self.startup_bias(estimate),
             offset_gain: self.offset_gain,
             samples: self.weight,
         }
     }
 
     /// `M (I - M)^-1 (start - estimate)`; infinite where the estimate has not begun to move.
-    fn remainder(&self, estimate: Impedance) -> Impedance {
-        let [k, b] = self.memory;
+    fn startup_bias(&self, estimate: Impedance) -> Impedance {
+        let [k, b] = self.transition;
         let way = self.start.moved(-1.0, estimate);
         let (k_done, b_done) = (1.0 - k.stiffness, 1.0 - b.damping);
         let crossed = k.damping * b.stiffness;

@@ -49,11 +49,11 @@ impl Covariance {
         gain
     }
 
-    /// Adds `kick` times the identity, `kick` >= 0.
-    pub fn inflate(&mut self, kick: f32) {
-        let d2 = self.d2 + kick;
+    /// Adds `perturbation` times the identity, `perturbation` >= 0.
+    pub fn inflate(&mut self, perturbation: f32) {
+        let d2 = self.d2 + perturbation;
         let share = self.d2 / d2;
-        self.d1 += kick + self.u * self.u * kick * share;
+        self.d1 += perturbation + self.u * self.u * perturbation * share;
         self.u *= share;
         self.d2 = d2;
     }

@@ -9,7 +9,7 @@ use crate::quality::Flags;
 use crate::quality::Step;
 use crate::recursive::covariance::Covariance;
 use crate::recursive::state::RecursiveState;
-use crate::update_law::Law;
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -61,7 +61,7 @@ pub struct CusumRlsState {
 
 impl CusumRls {
     /// The covariance may grow to this multiple of the prior's.
-    const ROOM: f32 = 4.0;
+    const COVARIANCE_GROWTH_LIMIT: f32 = 4.0;
 
     /// Checks the settings.
     ///
@@ -72,11 +72,16 @@ impl CusumRls {
         require(lambda > 0.5 && lambda <= 1.0, "forgetting_factor", "above 0.5 and at most 1")?;
         config.change.check()?;
         let variances = config.prior.check()?.variances();
-        Ok(Self { config, variances, growth: 1.0 / lambda, limits: Impedance::ZERO.moved(Self::ROOM, variances) })
+        Ok(Self {
+            config,
+            variances,
+            growth: 1.0 / lambda,
+            limits: Impedance::ZERO.moved(Self::COVARIANCE_GROWTH_LIMIT, variances),
+        })
     }
 
     fn from(&self, estimate: Impedance, change: ChangeState) -> CusumRlsState {
-        CusumRlsState { recursion: RecursiveState::believing(self.prior(), estimate), change }
+        CusumRlsState { recursion: RecursiveState::with_prior(self.prior(), estimate), change }
     }
 
     fn prior(&self) -> Covariance {
@@ -85,7 +90,7 @@ impl CusumRls {
 
     /// Begins again where the innovation says so, then takes in `o`.
     fn advance(&self, state: &mut CusumRlsState, o: &Observation) -> (f32, Impedance, Flags) {
-        let innovation = o.misfit(state.recursion.estimate);
+        let innovation = o.residual(state.recursion.estimate);
         let changed = self.config.change.update(&mut state.change, innovation);
         if changed {
             *state = self.from(state.recursion.estimate, state.change);
@@ -99,20 +104,20 @@ impl CusumRls {
         (innovation, gain, flags)
     }
 
-    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::learn`].
-    pub fn learn(&self, state: &mut CusumRlsState, o: &Observation) -> f32 {
+    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::update_estimate`].
+    pub fn update_estimate(&self, state: &mut CusumRlsState, o: &Observation) -> f32 {
         self.advance(state, o).0
     }
 }
 
-impl Law for CusumRls {
+impl UpdateLaw for CusumRls {
     type State = CusumRlsState;
 
-    fn start(&self) -> CusumRlsState {
+    fn initial_state(&self) -> CusumRlsState {
         self.from(Impedance::ZERO, ChangeState::default())
     }
 
-    fn forget(&self, state: &mut CusumRlsState) {
+    fn reset_memory(&self, state: &mut CusumRlsState) {
         *state = self.from(state.recursion.estimate, ChangeState::default());
     }
 

@@ -5,9 +5,9 @@ use crate::error::{ConfigError, require};
 use crate::math::sym2::Sym2;
 use crate::prior::Prior;
 use crate::quality::Flags;
-use crate::quality::Propagation;
 use crate::quality::Step;
-use crate::update_law::Law;
+use crate::quality::UncertaintyPropagation;
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -53,7 +53,7 @@ pub struct DirectionalRlsState {
     pub estimate: Impedance,
     /// R, the inverse of the covariance per unit of noise variance.
     pub information: Sym2,
-    uncertainty: Propagation,
+    uncertainty: UncertaintyPropagation,
 }
 
 impl DirectionalRls {
@@ -69,31 +69,31 @@ impl DirectionalRls {
     }
 
     fn from(&self, estimate: Impedance) -> DirectionalRlsState {
-        DirectionalRlsState { estimate, information: self.start, uncertainty: Propagation::new(estimate) }
+        DirectionalRlsState { estimate, information: self.start, uncertainty: UncertaintyPropagation::new(estimate) }
     }
 
     /// R without what is forgotten along `phi`; all of it where nothing is known along it.
-    fn faded(&self, information: Sym2, phi: Impedance) -> Sym2 {
+    fn forgotten(&self, information: Sym2, phi: Impedance) -> Sym2 {
         let along = information.times(phi);
         let known = along.stiffness * phi.stiffness + along.damping * phi.damping;
         if known > f32::MIN_POSITIVE {
             let share = (self.config.forgetting_factor - 1.0) / known;
-            let faded = information.plus_outer(share, along.stiffness, along.damping);
-            if faded.xx > 0.0 && faded.vv > 0.0 { faded } else { information }
+            let forgotten = information.plus_outer(share, along.stiffness, along.damping);
+            if forgotten.xx > 0.0 && forgotten.vv > 0.0 { forgotten } else { information }
         } else {
             information
         }
     }
 }
 
-impl Law for DirectionalRls {
+impl UpdateLaw for DirectionalRls {
     type State = DirectionalRlsState;
 
-    fn start(&self) -> DirectionalRlsState {
+    fn initial_state(&self) -> DirectionalRlsState {
         self.from(Impedance::ZERO)
     }
 
-    fn forget(&self, state: &mut DirectionalRlsState) {
+    fn reset_memory(&self, state: &mut DirectionalRlsState) {
         *state = self.from(state.estimate);
     }
 
@@ -104,9 +104,9 @@ impl Law for DirectionalRls {
     fn update(&self, state: &mut DirectionalRlsState, recent: Recent<'_>) -> Step {
         let o: Observation = recent.newest().unwrap_or_default();
         let phi = Impedance { stiffness: o.penetration, damping: o.rate };
-        let innovation = o.misfit(state.estimate);
+        let innovation = o.residual(state.estimate);
         let lambda = self.config.forgetting_factor;
-        let information = self.faded(state.information, phi).plus_outer(1.0, o.penetration, o.rate);
+        let information = self.forgotten(state.information, phi).plus_outer(1.0, o.penetration, o.rate);
         let mut flags = Flags::empty();
         let gain = match information.invert(0.0) {
             Some(covariance) => covariance.times(phi),
@@ -115,16 +115,16 @@ impl Law for DirectionalRls {
         let next = state.estimate.moved(innovation, gain);
         if gain != Impedance::ZERO && next.is_finite() {
             (state.estimate, state.information) = (next, information);
-            state.uncertainty.advance(&o, gain, innovation, lambda.min(MOST));
+            state.uncertainty.advance(&o, gain, innovation, lambda.min(MAX_FORGETTING));
         } else if !information.is_finite() {
             state.information = self.start;
             flags = Flags::RESET;
         } else {
             flags = Flags::HELD;
         }
-        state.uncertainty.step(state.estimate, innovation, lambda.min(MOST), flags)
+        state.uncertainty.step(state.estimate, innovation, lambda.min(MAX_FORGETTING), flags)
     }
 }
 
 /// Forgetting factor, at most, of what tells fill and excitation.
-const MOST: f32 = 0.999;
+const MAX_FORGETTING: f32 = 0.999;

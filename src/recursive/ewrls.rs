@@ -5,7 +5,7 @@ use crate::error::{ConfigError, require};
 use crate::quality::Flags;
 use crate::quality::Step;
 use crate::recursive::state::{RecursiveState, check_covariance};
-use crate::update_law::Law;
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -66,23 +66,23 @@ impl Ewrls {
 
 impl Ewrls {
     /// Moves the estimate and its covariance by one observation, and nothing else: no interval, fill or excitation, at
-    /// less than a fifth of the instructions of [`Law::update`]. A state that was moved by it has no intervals to tell until
+    /// less than a fifth of the instructions of [`UpdateLaw::update`]. A state that was moved by it has no intervals to tell until
     /// it is forgotten. Returns the innovation, in internal units of force.
-    pub fn learn(&self, state: &mut RecursiveState, o: &Observation) -> f32 {
-        let innovation = o.misfit(state.estimate);
+    pub fn update_estimate(&self, state: &mut RecursiveState, o: &Observation) -> f32 {
+        let innovation = o.residual(state.estimate);
         let mut covariance = state.covariance;
         let gain = covariance.observe_with(o, self.config.forgetting_factor, self.growth);
         if state.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
             innovation
         } else {
-            self.learn_within(state, o)
+            self.update_estimate_limited(state, o)
         }
     }
 
     /// The same where the covariance has to be limited, or begins anew.
     #[cold]
-    fn learn_within(&self, state: &mut RecursiveState, o: &Observation) -> f32 {
-        let innovation = o.misfit(state.estimate);
+    fn update_estimate_limited(&self, state: &mut RecursiveState, o: &Observation) -> f32 {
+        let innovation = o.residual(state.estimate);
         let mut covariance = state.covariance;
         let gain = covariance.observe_with(o, self.config.forgetting_factor, self.growth);
         covariance.limit(self.config.covariance_limit);
@@ -91,14 +91,14 @@ impl Ewrls {
     }
 }
 
-impl Law for Ewrls {
+impl UpdateLaw for Ewrls {
     type State = RecursiveState;
 
-    fn start(&self) -> RecursiveState {
+    fn initial_state(&self) -> RecursiveState {
         RecursiveState::new(self.config.initial_covariance, Impedance::ZERO)
     }
 
-    fn forget(&self, state: &mut RecursiveState) {
+    fn reset_memory(&self, state: &mut RecursiveState) {
         *state = RecursiveState::new(self.config.initial_covariance, state.estimate);
     }
 
@@ -109,7 +109,7 @@ impl Law for Ewrls {
     fn update(&self, state: &mut RecursiveState, recent: Recent<'_>) -> Step {
         let lambda = self.config.forgetting_factor;
         let o = recent.newest().unwrap_or_default();
-        let innovation = o.misfit(state.estimate);
+        let innovation = o.residual(state.estimate);
         let mut covariance = state.covariance;
         let gain = covariance.observe_with(&o, lambda, self.growth);
         let limited = covariance.limit(self.config.covariance_limit);

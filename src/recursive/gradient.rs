@@ -4,8 +4,8 @@ use crate::contact::Impedance;
 use crate::error::{ConfigError, require_positive};
 use crate::quality::Flags;
 use crate::quality::Step;
-use crate::quality::{MEMORY, Propagation};
-use crate::update_law::Law;
+use crate::quality::{DEFAULT_FORGETTING, UncertaintyPropagation};
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ pub struct Gradient {
 pub struct GradientState {
     /// K and B, internal units.
     pub estimate: Impedance,
-    uncertainty: Propagation,
+    uncertainty: UncertaintyPropagation,
 }
 
 impl Gradient {
@@ -60,15 +60,15 @@ impl Gradient {
     }
 }
 
-impl Law for Gradient {
+impl UpdateLaw for Gradient {
     type State = GradientState;
 
-    fn start(&self) -> GradientState {
-        GradientState { estimate: Impedance::ZERO, uncertainty: Propagation::new(Impedance::ZERO) }
+    fn initial_state(&self) -> GradientState {
+        GradientState { estimate: Impedance::ZERO, uncertainty: UncertaintyPropagation::new(Impedance::ZERO) }
     }
 
-    fn forget(&self, state: &mut GradientState) {
-        state.uncertainty = Propagation::new(state.estimate);
+    fn reset_memory(&self, state: &mut GradientState) {
+        state.uncertainty = UncertaintyPropagation::new(state.estimate);
     }
 
     fn window(&self) -> usize {
@@ -77,7 +77,7 @@ impl Law for Gradient {
 
     fn update(&self, state: &mut GradientState, recent: Recent<'_>) -> Step {
         let o = recent.newest().unwrap_or_default();
-        let innovation = o.misfit(state.estimate);
+        let innovation = o.residual(state.estimate);
         let pull = Impedance {
             stiffness: self.config.stiffness_gain * o.penetration,
             damping: self.config.damping_gain * o.rate,
@@ -88,10 +88,10 @@ impl Law for Gradient {
         let mut flags = Flags::empty();
         if next.is_finite() {
             state.estimate = next;
-            state.uncertainty.advance(&o, gain, innovation, MEMORY);
+            state.uncertainty.advance(&o, gain, innovation, DEFAULT_FORGETTING);
         } else {
             flags = Flags::HELD;
         }
-        state.uncertainty.step(state.estimate, innovation, MEMORY, flags)
+        state.uncertainty.step(state.estimate, innovation, DEFAULT_FORGETTING, flags)
     }
 }

@@ -36,7 +36,7 @@ pub struct ParameterState<const P: usize> {
     diagonal: [f32; P],
     upper: [[f32; P]; P],
     change: ChangeState,
-    /// Sums of innovation times residual, of the weights, and of their squares.
+    /// SecondOrderSums of innovation times residual, of the weights, and of their squares.
     square: f32,
     weight: f32,
     weight_squared: f32,
@@ -71,7 +71,7 @@ impl<const P: usize> ParameterRls<P> {
     }
 
     /// Before the first row.
-    pub fn start(&self) -> ParameterState<P> {
+    pub fn initial_state(&self) -> ParameterState<P> {
         self.from([0.0; P], ChangeState::default())
     }
 

@@ -5,7 +5,7 @@ use crate::error::{ConfigError, require};
 use crate::quality::Step;
 use crate::recursive::covariance::Covariance;
 use crate::recursive::state::{RecursiveState, check_initial_covariance};
-use crate::update_law::Law;
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -61,14 +61,14 @@ impl ResetRls {
     }
 }
 
-impl Law for ResetRls {
+impl UpdateLaw for ResetRls {
     type State = ResetRlsState;
 
-    fn start(&self) -> ResetRlsState {
+    fn initial_state(&self) -> ResetRlsState {
         self.from(Impedance::ZERO)
     }
 
-    fn forget(&self, state: &mut ResetRlsState) {
+    fn reset_memory(&self, state: &mut ResetRlsState) {
         *state = self.from(state.recursion.estimate);
     }
 
@@ -83,7 +83,7 @@ impl Law for ResetRls {
             state.since_reset = 0;
         }
         state.since_reset += 1;
-        let innovation = o.misfit(state.recursion.estimate);
+        let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe(&o, 1.0);
         let flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);

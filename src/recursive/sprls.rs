@@ -5,12 +5,12 @@ use core::cmp::Ordering;
 use crate::contact::{Impedance, Observation};
 use crate::error::{ConfigError, require_not_negative};
 use crate::math::smaller;
+use crate::quality::DEFAULT_FORGETTING;
 use crate::quality::Flags;
-use crate::quality::MEMORY;
 use crate::quality::Step;
 use crate::recursive::covariance::Covariance;
 use crate::recursive::state::{RecursiveState, check_covariance};
-use crate::update_law::Law;
+use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -19,10 +19,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct SprlsConfig {
-    /// beta >= 0: size of one step of the kick, internal units (the paper's beta, 100).
+    /// beta >= 0: size of one step of the perturbation, internal units (the paper's beta, 100).
     pub perturbation_gain: f32,
-    /// gamma >= 0: steps of the kick per squared residual, internal units (the paper's gamma, 2 per N^2). Residuals
-    /// below sqrt(0.5 / gamma) do not kick.
+    /// gamma >= 0: steps of the perturbation per squared residual, internal units (the paper's gamma, 2 per N^2). Residuals
+    /// below sqrt(0.5 / gamma) do not perturbation.
     pub perturbation_sensitivity: f32,
     /// P(0) = `initial_covariance` * I, above 0, at most 1e8.
     pub initial_covariance: f32,
@@ -76,7 +76,7 @@ impl Sprls {
     }
 
     /// `beta * NINT(gamma e^2)`, bounded by the limit of the covariance.
-    pub fn kick(&self, innovation: f32) -> f32 {
+    pub fn perturbation(&self, innovation: f32) -> f32 {
         let level = self.config.perturbation_sensitivity * innovation * innovation;
         // From 2^23 on a single-precision number is whole already.
         let steps = if level < 8_388_608.0 { (level + 0.5) as u32 as f32 } else { level };
@@ -85,18 +85,18 @@ impl Sprls {
 }
 
 impl Sprls {
-    /// Whether `innovation` may kick: less than half a step is none. Not a number may.
+    /// Whether `innovation` may perturbation: less than half a step is none. Not a number may.
     #[inline(always)]
-    fn kicks(&self, innovation: f32) -> bool {
+    fn perturbs(&self, innovation: f32) -> bool {
         let level = self.config.perturbation_sensitivity * innovation * innovation;
         level.partial_cmp(&0.499_999) != Some(Ordering::Less)
     }
 
-    /// The kick of the innovation before, where there is one.
+    /// The perturbation of the innovation before, where there is one.
     fn perturb(&self, covariance: &mut Covariance, innovation: f32) {
-        let kick = self.kick(innovation);
-        if kick > 0.0 {
-            covariance.inflate(kick);
+        let perturbation = self.perturbation(innovation);
+        if perturbation > 0.0 {
+            covariance.inflate(perturbation);
         }
     }
 
@@ -106,24 +106,24 @@ impl Sprls {
 }
 
 impl Sprls {
-    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::learn`].
-    pub fn learn(&self, state: &mut SprlsState, o: &Observation) -> f32 {
-        let innovation = o.misfit(state.recursion.estimate);
+    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::update_estimate`].
+    pub fn update_estimate(&self, state: &mut SprlsState, o: &Observation) -> f32 {
+        let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe_with(o, 1.0, 1.0);
-        let quiet = !self.kicks(state.innovation_before);
+        let quiet = !self.perturbs(state.innovation_before);
         if quiet && state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
             state.innovation_before = innovation;
             innovation
         } else {
-            self.learn_perturbed(state, o)
+            self.update_estimate_perturbed(state, o)
         }
     }
 
     /// The same where the covariance is kicked, has to be limited, or begins anew.
     #[cold]
-    fn learn_perturbed(&self, state: &mut SprlsState, o: &Observation) -> f32 {
-        let innovation = o.misfit(state.recursion.estimate);
+    fn update_estimate_perturbed(&self, state: &mut SprlsState, o: &Observation) -> f32 {
+        let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe_with(o, 1.0, 1.0);
         self.perturb(&mut covariance, state.innovation_before);
@@ -134,14 +134,14 @@ impl Sprls {
     }
 }
 
-impl Law for Sprls {
+impl UpdateLaw for Sprls {
     type State = SprlsState;
 
-    fn start(&self) -> SprlsState {
+    fn initial_state(&self) -> SprlsState {
         self.from(Impedance::ZERO)
     }
 
-    fn forget(&self, state: &mut SprlsState) {
+    fn reset_memory(&self, state: &mut SprlsState) {
         *state = self.from(state.recursion.estimate);
     }
 
@@ -151,7 +151,7 @@ impl Law for Sprls {
 
     fn update(&self, state: &mut SprlsState, recent: Recent<'_>) -> Step {
         let o = recent.newest().unwrap_or_default();
-        let innovation = o.misfit(state.recursion.estimate);
+        let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe_with(&o, 1.0, 1.0);
         self.perturb(&mut covariance, state.innovation_before);
@@ -159,6 +159,6 @@ impl Law for Sprls {
         let mut flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
         flags.set(Flags::LIMITED, limited);
         state.innovation_before = innovation;
-        state.recursion.step(&o, gain, innovation, MEMORY, flags)
+        state.recursion.step(&o, gain, innovation, DEFAULT_FORGETTING, flags)
     }
 }

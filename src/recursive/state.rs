@@ -4,13 +4,13 @@ use crate::contact::{Impedance, Observation};
 use crate::error::{ConfigError, require, require_positive};
 use crate::math::smaller;
 use crate::quality::Flags;
-use crate::quality::Propagation;
 use crate::quality::Step;
+use crate::quality::UncertaintyPropagation;
 use crate::recursive::covariance::Covariance;
 
 /// Forgetting factor, at most, of what tells fill and excitation: a sum in single precision over a memory of a thousand
 /// samples is exact to 1e-4, and one that never forgets would stop growing.
-const LONGEST_MEMORY: f32 = 0.999;
+const MAX_FORGETTING: f32 = 0.999;
 
 /// The state of a recursive least-squares law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,28 +19,28 @@ pub struct RecursiveState {
     pub estimate: Impedance,
     /// Covariance per unit of noise variance.
     pub covariance: Covariance,
-    uncertainty: Propagation,
+    uncertainty: UncertaintyPropagation,
 }
 
 impl RecursiveState {
     /// The estimate without what is left in it of the zero that it started from; `None` until both parameters have been told.
     ///
     /// A small P(0) draws a recursion to its start for seconds. How much of the start is still in it is known, for its gains are:
-    /// `M (I - M)^-1 (start - estimate)` ([`Propagation`]). Taken off, what is left is the weighted least squares of the samples
+    /// `M (I - M)^-1 (start - estimate)` ([`UncertaintyPropagation`]). Taken off, what is left is the weighted least squares of the samples
     /// alone. The state and its innovations stay as they are, so this can be asked for or left at any sample.
     pub fn without_start(&self) -> Option<Impedance> {
-        let told = self.estimate.moved(-1.0, self.uncertainty.confidence(self.estimate).remainder);
+        let told = self.estimate.moved(-1.0, self.uncertainty.confidence(self.estimate).startup_bias);
         told.is_finite().then_some(told)
     }
 
     /// With the estimate at `estimate` and all else at its start.
     pub(crate) fn new(initial_covariance: f32, estimate: Impedance) -> Self {
-        Self::believing(Covariance::identity(initial_covariance), estimate)
+        Self::with_prior(Covariance::identity(initial_covariance), estimate)
     }
 
     /// With the estimate at `estimate`, believed as far as `covariance` says.
-    pub(crate) fn believing(covariance: Covariance, estimate: Impedance) -> Self {
-        Self { estimate, covariance, uncertainty: Propagation::new(estimate) }
+    pub(crate) fn with_prior(covariance: Covariance, estimate: Impedance) -> Self {
+        Self { estimate, covariance, uncertainty: UncertaintyPropagation::new(estimate) }
     }
 
     /// Moves the estimate by `gain * innovation` and takes `covariance`, both or neither; where either is unsound, the
@@ -104,7 +104,7 @@ impl RecursiveState {
         forgetting: f32,
         flags: Flags,
     ) -> Step {
-        let forgetting = smaller(forgetting, LONGEST_MEMORY);
+        let forgetting = smaller(forgetting, MAX_FORGETTING);
         self.uncertainty.advance(o, gain, innovation, forgetting);
         self.uncertainty.step(self.estimate, innovation, forgetting, flags)
     }

@@ -1,7 +1,7 @@
 //! The effort that leaves the drive.
 
 use palpate::{Estimate, Flags, Impedance, Sample};
-use palpate_drive::{Bounds, Faults, Standing, effort, trusted};
+use palpate_drive::{Bounds, Faults, Validity, effort, trusted};
 
 const BOUNDS: Bounds = Bounds {
     least: Impedance { stiffness: 50.0, damping: 0.5 },
@@ -21,7 +21,7 @@ fn strong(contact: Option<Impedance>) -> f32 {
 
 #[test]
 fn what_is_trusted_stays_within_what_the_controller_was_designed_for() {
-    let of = |k, b| trusted(&estimate(k, b), Standing::Live, Faults::empty(), &BOUNDS);
+    let of = |k, b| trusted(&estimate(k, b), Validity::Live, Faults::empty(), &BOUNDS);
     assert_eq!(of(300.0, 5.0), Some(Impedance { stiffness: 300.0, damping: 5.0 }));
     assert_eq!(of(1e9, -3.0), Some(Impedance { stiffness: 5_000.0, damping: 0.5 }));
     assert_eq!(of(f32::NAN, 5.0), None);
@@ -34,14 +34,14 @@ fn what_is_trusted_stays_within_what_the_controller_was_designed_for() {
 fn any_single_fault_and_any_doubt_makes_the_effort_zero() {
     let sound = estimate(300.0, 5.0);
     for fault in Faults::all() {
-        assert_eq!(strong(trusted(&sound, Standing::Live, fault, &BOUNDS)), 0.0, "{}", fault.name());
+        assert_eq!(strong(trusted(&sound, Validity::Live, fault, &BOUNDS)), 0.0, "{}", fault.name());
     }
-    for standing in [Standing::Held, Standing::Void] {
-        assert_eq!(strong(trusted(&sound, standing, Faults::empty(), &BOUNDS)), 0.0, "{standing:?}");
+    for validity in [Validity::Held, Validity::Void] {
+        assert_eq!(strong(trusted(&sound, validity, Faults::empty(), &BOUNDS)), 0.0, "{validity:?}");
     }
     for flags in [Flags::NO_CONTACT, Flags::HELD, Flags::TOO_FEW, Flags::STIFFNESS_UNCERTAIN] {
         let doubtful = Estimate { flags, ..sound };
-        assert_eq!(strong(trusted(&doubtful, Standing::Live, Faults::empty(), &BOUNDS)), 0.0, "{flags:?}");
+        assert_eq!(strong(trusted(&doubtful, Validity::Live, Faults::empty(), &BOUNDS)), 0.0, "{flags:?}");
     }
     assert_eq!(effort(Some(Impedance { stiffness: 300.0, damping: 5.0 }), None, &BOUNDS, |_, _| 5.0), 0.0);
 }

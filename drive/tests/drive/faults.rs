@@ -1,6 +1,6 @@
 //! One fault after the other: what was fed, what the estimate says, how it comes back.
 
-use palpate_drive::{Faults, Input, Notes, Order, Settings, Standing, ads8681, as5047p};
+use palpate_drive::{Faults, Input, InputStatus, Order, Settings, Validity, ads8681, as5047p};
 
 use super::{CALIBRATION, assert_honest, dithered, with_cycle, words};
 
@@ -16,7 +16,7 @@ struct Case {
 fn cases() -> Vec<Case> {
     let case = |fault, fed, upset, live| Case { fault, fed, upset, live };
     vec![
-        case(Faults::POSITION_TIMEOUT, "no answer", |i| Input { notes: Notes::NO_POSITION, ..i }, false),
+        case(Faults::POSITION_TIMEOUT, "no answer", |i| Input { status: InputStatus::NO_POSITION, ..i }, false),
         case(Faults::POSITION_PARITY, "bit 3 of the angle upset", |i| Input { angle: i.angle ^ 8, ..i }, false),
         case(
             Faults::POSITION_ALARM,
@@ -26,7 +26,7 @@ fn cases() -> Vec<Case> {
         ),
         case(Faults::POSITION_RANGE, "31 mm out of the surface, of 30", |_| words(-0.031, 0.0), false),
         case(Faults::POSITION_JUMP, "5 mm in a millisecond", |_| words(0.005, 1.5), false),
-        case(Faults::FORCE_TIMEOUT, "no answer", |i| Input { notes: Notes::NO_FORCE, ..i }, false),
+        case(Faults::FORCE_TIMEOUT, "no answer", |i| Input { status: InputStatus::NO_FORCE, ..i }, false),
         case(Faults::FORCE_PARITY, "bit 20 of the word upset", |i| Input { force: i.force ^ 1 << 20, ..i }, false),
         case(Faults::FORCE_ALARM, "supply alarm", |i| Input { force: i.force ^ 1 << 7 ^ 1 << 2, ..i }, false),
         case(
@@ -43,9 +43,9 @@ fn cases() -> Vec<Case> {
         ),
         case(Faults::SAMPLE_LOST, "nothing", |_| Input::NOTHING, false),
         case(Faults::SAMPLE_LOST, "the third tick after the last", |i| Input { elapsed: 3, ..i }, true),
-        case(Faults::BROWN_OUT, "supply low", |i| Input { notes: Notes::BROWN_OUT, ..i }, false),
-        case(Faults::OVERRUN, "the tick before was late", |i| Input { notes: Notes::OVERRUN, ..i }, true),
-        case(Faults::LINK_GONE, "nothing heard", |i| Input { notes: Notes::LINK_GONE, ..i }, true),
+        case(Faults::BROWN_OUT, "supply low", |i| Input { status: InputStatus::BROWN_OUT, ..i }, false),
+        case(Faults::OVERRUN, "the tick before was late", |i| Input { status: InputStatus::OVERRUN, ..i }, true),
+        case(Faults::LINK_GONE, "nothing heard", |i| Input { status: InputStatus::LINK_GONE, ..i }, true),
     ]
 }
 
@@ -68,8 +68,8 @@ fn each_fault_is_told_held_counted_and_forgotten_in_time() {
                     k += 1;
                 }
                 let sound = last.expect("a report");
-                assert!(sound.faults.is_empty() && sound.standing == Standing::Live, "{sound:?}");
-                let mut end = sound.standing;
+                assert!(sound.faults.is_empty() && sound.validity == Validity::Live, "{sound:?}");
+                let mut end = sound.validity;
                 for _ in 0..length {
                     let report = cycle.tick((case.upset)(dithered(k)));
                     assert_honest(&report);
@@ -78,24 +78,24 @@ fn each_fault_is_told_held_counted_and_forgotten_in_time() {
                         "{}: {report:?}",
                         case.fed
                     );
-                    end = report.standing;
+                    end = report.validity;
                     k += 1;
                 }
                 let beyond = length > u32::from(Settings::default().hold);
                 let wanted = match (case.live, beyond) {
-                    (true, _) => Standing::Live,
-                    (false, false) => Standing::Held,
-                    (false, true) => Standing::Void,
+                    (true, _) => Validity::Live,
+                    (false, false) => Validity::Held,
+                    (false, true) => Validity::Void,
                 };
                 // A new place is believed at the second look.
-                let wanted = if case.fault == Faults::POSITION_JUMP && length > 1 { Standing::Live } else { wanted };
+                let wanted = if case.fault == Faults::POSITION_JUMP && length > 1 { Validity::Live } else { wanted };
                 assert_eq!(end, wanted, "{} for {length} ticks", case.fed);
                 let (mut live, mut quiet) = (None, None);
                 for after in 1..=40 {
                     let report = cycle.tick(dithered(k));
                     assert_honest(&report);
                     k += 1;
-                    live = live.or((report.standing == Standing::Live).then_some(after));
+                    live = live.or((report.validity == Validity::Live).then_some(after));
                     quiet = quiet.or(report.faults.is_empty().then_some(after));
                 }
                 let bit = case.fault.bits().trailing_zeros() as usize;
@@ -170,7 +170,7 @@ fn what_was_found_at_the_start_stays_until_it_is_acknowledged_or_for_good() {
             (from..from + 500).map(|k| cycle.tick(dithered(k))).last().expect("a report")
         };
         let report = run(cycle, 0);
-        assert_eq!((report.faults, report.standing), (found, Standing::Live), "it works, and says so");
+        assert_eq!((report.faults, report.validity), (found, Validity::Live), "it works, and says so");
         cycle.order(Order::Acknowledge);
         assert_eq!(run(cycle, 500).faults, Faults::CALIBRATION | Faults::CLOCK);
     });
@@ -220,9 +220,9 @@ fn after_a_jump_the_contact_before_is_not_the_contact_after() {
             Input { angle, ..dithered(k) }
         };
         let slip = cycle.tick(slipped(1_000));
-        assert_eq!((slip.faults, slip.standing), (Faults::POSITION_JUMP, Standing::Held));
+        assert_eq!((slip.faults, slip.validity), (Faults::POSITION_JUMP, Validity::Held));
         let next = cycle.tick(slipped(1_001));
-        assert!(next.restarted && next.standing == Standing::Live && next.estimate.fill == 0.0, "{next:?}");
+        assert!(next.restarted && next.validity == Validity::Live && next.estimate.fill == 0.0, "{next:?}");
     });
 }
 
@@ -234,7 +234,7 @@ fn what_moved_while_nothing_was_read_has_not_jumped() {
         (0..10).for_each(|k| assert_honest(&cycle.tick(place(k))));
         (10..40).for_each(|_| assert_honest(&cycle.tick(Input::NOTHING)));
         let report = cycle.tick(place(40));
-        assert!(!report.faults.contains(Faults::POSITION_JUMP) && report.standing == Standing::Live, "{report:?}");
+        assert!(!report.faults.contains(Faults::POSITION_JUMP) && report.validity == Validity::Live, "{report:?}");
         assert_eq!(report.sample.map(|sample| sample.elapsed), Some(0.031), "and its time covers the gap");
     });
 }

@@ -1,9 +1,11 @@
 //! The link: whatever the bytes.
 
 use palpate_drive::framing::{LINE_BYTES, Receiver, encode};
-use palpate_drive::link::{Command, FEED, Message, Outcome, Request, Seen, Source, Streams, Told};
+use palpate_drive::link::{
+    Command, EstimateMessage, FEED, Message, Request, RequestOutcome, SampleMessage, Source, Streams,
+};
 use palpate_drive::replay_format::estimate_words;
-use palpate_drive::{Desk, Faults, INPUT_BYTES, Input, Order, Settings, Wish};
+use palpate_drive::{DecodedRequest, Faults, INPUT_BYTES, Input, Order, RequestDecoder, Settings};
 
 use super::{dithered, with_cycle};
 
@@ -84,28 +86,28 @@ fn requests() -> Vec<Vec<u8>> {
         .collect()
 }
 
-fn hear(desk: &mut Desk, bytes: &[u8]) -> Vec<(u16, Wish)> {
-    bytes.iter().filter_map(|&byte| desk.hear(byte)).collect()
+fn hear(decoder: &mut RequestDecoder, bytes: &[u8]) -> Vec<(u16, DecodedRequest)> {
+    bytes.iter().filter_map(|&byte| decoder.push(byte)).collect()
 }
 
 #[test]
 fn every_request_arrives_and_nothing_is_counted_as_lost() {
-    let mut desk = Desk::new();
+    let mut decoder = RequestDecoder::new();
     let all = requests();
-    let wishes = hear(&mut desk, &all.concat());
+    let wishes = hear(&mut decoder, &all.concat());
     assert_eq!(wishes.len(), all.len());
     assert!(wishes.iter().enumerate().all(|(k, (number, _))| usize::from(*number) == k));
-    let Wish::Feed(inputs, used) = wishes[7].1 else { panic!("{:?}", wishes[7]) };
+    let DecodedRequest::Feed(inputs, used) = wishes[7].1 else { panic!("{:?}", wishes[7]) };
     assert_eq!((inputs[3], used), (dithered(3), FEED));
-    assert_eq!((desk.tally().frames as usize, desk.tally().lost()), (all.len(), 0));
+    assert_eq!((decoder.link_counters().frames as usize, decoder.link_counters().lost()), (all.len(), 0));
 }
 
 #[test]
 fn who_begins_in_the_middle_is_in_step_from_the_next_frame_on() {
     let all = requests().concat();
     for start in 0..all.len() {
-        let mut desk = Desk::new();
-        let heard = hear(&mut desk, &all[start..]);
+        let mut decoder = RequestDecoder::new();
+        let heard = hear(&mut decoder, &all[start..]);
         let whole = all[start..].iter().filter(|&&byte| byte == 0).count();
         assert!(heard.len() >= whole - 1, "from byte {start}: {} of {whole}", heard.len());
     }
@@ -114,11 +116,11 @@ fn who_begins_in_the_middle_is_in_step_from_the_next_frame_on() {
 #[test]
 fn what_is_damaged_oversized_of_another_version_or_cannot_be_is_refused_and_counted() {
     let good = line(&Request { number: 1, command: Command::Identify });
-    let mut desk = Desk::new();
+    let mut decoder = RequestDecoder::new();
     let mut after = |bytes: &[u8]| {
-        assert_eq!(hear(&mut desk, bytes), [], "{bytes:x?}");
-        assert_eq!(hear(&mut desk, &good).len(), 1, "and the next one is heard");
-        desk.tally()
+        assert_eq!(hear(&mut decoder, bytes), [], "{bytes:x?}");
+        assert_eq!(hear(&mut decoder, &good).len(), 1, "and the next one is heard");
+        decoder.link_counters()
     };
     assert_eq!(after(&[vec![7; 4_000], vec![0]].concat()).oversized, 1);
     assert_eq!(after(&[200, 1, 0]).malformed, 1);
@@ -133,12 +135,12 @@ fn what_is_damaged_oversized_of_another_version_or_cannot_be_is_refused_and_coun
     for length in [0, INPUT_BYTES - 1, INPUT_BYTES + 1, INPUT_BYTES * (FEED + 1)] {
         let bytes = vec![1; length];
         let before = desk_refusals(&mut after, &good);
-        let tally = after(&line(&Request { number: 1, command: Command::Feed(&bytes) }));
-        assert_eq!(tally.refused, before + 1, "{length} bytes");
+        let link_counters = after(&line(&Request { number: 1, command: Command::Feed(&bytes) }));
+        assert_eq!(link_counters.refused, before + 1, "{length} bytes");
     }
 }
 
-fn desk_refusals(after: &mut impl FnMut(&[u8]) -> palpate_drive::framing::Tally, _: &[u8]) -> u32 {
+fn desk_refusals(after: &mut impl FnMut(&[u8]) -> palpate_drive::framing::LinkCounters, _: &[u8]) -> u32 {
     after(&[0]).refused
 }
 
@@ -153,9 +155,9 @@ fn another_version_is_counted_as_such() {
     frame.extend(check.to_le_bytes());
     let mut stuffed = cobs_encode(&frame);
     stuffed.push(0);
-    let mut desk = Desk::new();
-    assert_eq!(hear(&mut desk, &stuffed), []);
-    assert_eq!((desk.tally().version, desk.tally().lost()), (1, 1));
+    let mut decoder = RequestDecoder::new();
+    assert_eq!(hear(&mut decoder, &stuffed), []);
+    assert_eq!((decoder.link_counters().version, decoder.link_counters().lost()), (1, 1));
 }
 
 /// Consistent overhead byte stuffing as its authors wrote it down (Cheshire and Baker, 1999), not as the library does it.
@@ -187,7 +189,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 
 #[test]
 fn the_frame_is_what_its_documentation_says() {
-    let message = Message::Answer { number: 300, outcome: Outcome::NoRoom };
+    let message = Message::Answer { number: 300, outcome: RequestOutcome::NoRoom };
     // Version 1; variant 0, 300 as a varint, variant 2.
     let body = [1, 0, 0xac, 0x02, 2];
     let mut expected = cobs_encode(&[&body[..], &crc32(&body).to_le_bytes()].concat());
@@ -202,8 +204,11 @@ fn reports_survive_the_journey_to_the_bit() {
         for k in 0..1_000 {
             let input = if k % 97 == 0 { Input::NOTHING } else { dithered(k) };
             let report = cycle.tick(input);
-            for byte in
-                [line(&Message::Estimate(Told::of(&report))), line(&Message::Sample(Seen::of(&report)))].concat()
+            for byte in [
+                line(&Message::Estimate(EstimateMessage::of(&report))),
+                line(&Message::Sample(SampleMessage::of(&report))),
+            ]
+            .concat()
             {
                 if !receiver.push(byte) {
                     continue;
@@ -211,14 +216,14 @@ fn reports_survive_the_journey_to_the_bit() {
                 match receiver.message() {
                     Some(Message::Estimate(told)) => {
                         assert_eq!(estimate_words(&told.estimate()), estimate_words(&report.estimate));
-                        assert_eq!((told.faults(), told.standing), (report.faults, report.standing));
+                        assert_eq!((told.faults(), told.validity), (report.faults, report.validity));
                     }
-                    Some(Message::Sample(seen)) => assert_eq!(seen, Seen::of(&report)),
+                    Some(Message::Sample(seen)) => assert_eq!(seen, SampleMessage::of(&report)),
                     other => panic!("{other:?}"),
                 }
             }
         }
-        assert_eq!((receiver.tally().frames, receiver.tally().lost()), (2_000, 0));
+        assert_eq!((receiver.link_counters().frames, receiver.link_counters().lost()), (2_000, 0));
     });
 }
 
@@ -241,27 +246,27 @@ fn resealed(whole: &[u8], random: &mut Random) -> Vec<u8> {
 #[test]
 fn fuzz_whatever_comes_over_the_line_the_desk_goes_on() {
     let (mut random, all) = (Random::new(3), requests());
-    let mut desk = Desk::new();
+    let mut decoder = RequestDecoder::new();
     let (mut granted, count) = (0_u64, fuzz_count());
     for k in 0..count {
         let whole = &all[random.below(all.len())];
         // Every other time the damage is done before the CRC is taken, so that it reaches the messages.
         let bytes = if k % 2 == 0 { random.damaged(whole) } else { resealed(whole, &mut random) };
-        granted += hear(&mut desk, &bytes).len() as u64;
+        granted += hear(&mut decoder, &bytes).len() as u64;
     }
-    let tally = desk.tally();
-    eprintln!("{count} inputs, {granted} wishes, {tally:?}");
+    let link_counters = decoder.link_counters();
+    eprintln!("{count} inputs, {granted} wishes, {link_counters:?}");
     for (what, times) in [
         ("wishes", granted),
-        ("oversized", tally.oversized.into()),
-        ("malformed", tally.malformed.into()),
-        ("checksum", tally.checksum.into()),
-        ("version", tally.version.into()),
-        ("refused", tally.refused.into()),
+        ("oversized", link_counters.oversized.into()),
+        ("malformed", link_counters.malformed.into()),
+        ("checksum", link_counters.checksum.into()),
+        ("version", link_counters.version.into()),
+        ("refused", link_counters.refused.into()),
     ] {
-        assert!(times > count / 100, "{what} {times}: {tally:?}");
+        assert!(times > count / 100, "{what} {times}: {link_counters:?}");
     }
     // And it still hears; the first zero ends whatever was left.
-    hear(&mut desk, &[0]);
-    assert_eq!(hear(&mut desk, &all[1]), [(1, Wish::Identity)]);
+    hear(&mut decoder, &[0]);
+    assert_eq!(hear(&mut decoder, &all[1]), [(1, DecodedRequest::Identity)]);
 }

@@ -8,7 +8,7 @@ mod sensors;
 mod weather;
 
 use palpate_drive::{
-    Bounds, Calibration, Counters, Cycle, Estimator, Faults, Input, Notes, Report, Settings, ads8681, as5047p,
+    Bounds, Calibration, Counters, Cycle, Estimator, Faults, Input, InputStatus, Report, Settings, ads8681, as5047p,
 };
 use std::f64::consts::TAU;
 
@@ -31,7 +31,7 @@ fn words(depth: f64, force: f64) -> Input {
         diagnostics: as5047p::with_parity(SOUND),
         force: ads8681::word(u16::try_from(code).expect("a code"), c.range),
         elapsed: 1,
-        notes: Notes::empty(),
+        status: InputStatus::empty(),
     }
 }
 
@@ -56,16 +56,16 @@ fn with_cycle<T>(settings: Settings, found: Faults, work: impl FnOnce(&mut Cycle
 #[track_caller]
 fn assert_honest(report: &Report) {
     use palpate::Flags;
-    use palpate_drive::Standing;
+    use palpate_drive::Validity;
     let e = &report.estimate;
     let sound = e.impedance.is_finite() && e.half_width.stiffness >= 0.0 && e.half_width.damping >= 0.0;
     assert!(sound && report.effort == 0.0, "{report:?}");
-    if report.standing == Standing::Live {
+    if report.validity == Validity::Live {
         assert!(report.sample.is_some(), "{report:?}");
     } else {
         assert!(!report.faults.is_empty() && e.flags.contains(Flags::HELD) && report.sample.is_none(), "{report:?}");
     }
-    if report.standing == Standing::Void {
+    if report.validity == Validity::Void {
         let nothing = e.impedance.stiffness == 0.0 && e.half_width.stiffness == f32::INFINITY;
         assert!(nothing, "{report:?}");
     }

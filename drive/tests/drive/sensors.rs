@@ -231,12 +231,12 @@ fn a_bus_that_answers_moves_every_kind_of_operation() {
 #[test]
 fn a_quadrature_count_goes_on_beyond_its_wraps() {
     let mut encoder = Quadrature::default();
-    assert_eq!(encoder.follow(65_000), 0, "zero is where it stands at power-on");
+    assert_eq!(encoder.update(65_000), 0, "zero is where it stands at power-on");
     let mut position = 0_i64;
     for step in [500, 400, 30_000, 32_767, -32_768, -20_000, -20_000, -20_000, 1] {
         position += i64::from(step);
         let count = (65_000 + position).rem_euclid(65_536) as u16;
-        assert_eq!(i64::from(encoder.follow(count)), position, "after {step}");
+        assert_eq!(i64::from(encoder.update(count)), position, "after {step}");
     }
 }
 

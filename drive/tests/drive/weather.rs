@@ -1,7 +1,7 @@
 //! Faults of all kinds at once, for millions of samples.
 
 use palpate::Method;
-use palpate_drive::{Faults, Input, Notes, Settings, Standing, ads8681, as5047p};
+use palpate_drive::{Faults, Input, InputStatus, Settings, Validity, ads8681, as5047p};
 
 use super::link::{Random, fuzz_count};
 use super::{CALIBRATION, assert_honest, dithered, with_cycle};
@@ -18,11 +18,11 @@ fn upset(random: &mut Random, input: Input) -> Input {
         5 => Input { angle: as5047p::with_parity(random.draw() as u16 & 0x3fff), ..input },
         6 => Input { force: ads8681::word(random.draw() as u16, range), ..input },
         7 => Input { elapsed: random.draw() as u8, ..input },
-        8 => Input { notes: Notes::from_bits_truncate(random.draw() as u8), ..input },
+        8 => Input { status: InputStatus::from_bits_truncate(random.draw() as u8), ..input },
         9 => Input::NOTHING,
         10 => Input { angle: 0, diagnostics: 0, force: 0, ..input },
         11 => Input { angle: 0xffff, diagnostics: 0xffff, force: u32::MAX, ..input },
-        12 => Input { notes: Notes::all(), elapsed: 255, ..input },
+        12 => Input { status: InputStatus::all(), elapsed: 255, ..input },
         _ => <[u8; 10]>::from(input).map(|byte| if random.below(3) == 0 { random.draw() as u8 } else { byte }).into(),
     }
 }
@@ -47,7 +47,7 @@ fn fuzz_in_any_weather_it_never_stops_never_lies_and_comes_back_within_a_window(
                     if stormy && random.below(rate) == 0 { upset(&mut random, dithered(k)) } else { dithered(k) };
                 let report = cycle.tick(input);
                 assert_honest(&report);
-                assert!(report.faults.contains(input.told()), "tick {k}: {report:?}");
+                assert!(report.faults.contains(input.faults()), "tick {k}: {report:?}");
                 if stormy {
                     storm -= 1;
                     continue;
@@ -55,7 +55,7 @@ fn fuzz_in_any_weather_it_never_stops_never_lies_and_comes_back_within_a_window(
                 calm -= 1;
                 // The lull's last tick, at least a hundred after the storm: no fault lingers, and the estimate lives.
                 if calm == 0 {
-                    assert!(report.faults.is_empty() && report.standing == Standing::Live, "tick {k}: {report:?}");
+                    assert!(report.faults.is_empty() && report.validity == Validity::Live, "tick {k}: {report:?}");
                 }
             }
             let [counted, used, restarts, _] = counters.others();

@@ -10,9 +10,9 @@ use palpate_cases::SimulatorKind;
 use super::challenge_score::ChallengeScore;
 use super::recordings::table::{section, table};
 use super::{page, protocol, summary};
-use crate::device::project;
 use crate::error::{InputError, UsageError};
 use crate::outfile::OutFile;
+use crate::qemu_bench::project;
 
 /// Put the diagnosis to recordings whose missing effect is concealed from it
 #[derive(Debug, Clone, Args)]

@@ -18,8 +18,8 @@ use super::recordings::run_diagnosis::diagnose_specimen;
 use super::recordings::specimen::{self, SealedAnswer, Specimen};
 use super::recordings::specimen_score::{RecordingScores, SpecimenScore};
 use super::{baselines, case_list, run_diagnosis};
-use crate::device::project;
 use crate::error::UsageError;
+use crate::qemu_bench::project;
 use crate::recordings_folder::{ADVICE, folder};
 
 /// A sealed answer.

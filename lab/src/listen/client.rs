@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
 use palpate_drive::Faults;
-use palpate_drive::framing::{LINE_BYTES, Receiver, Tally, encode};
-use palpate_drive::link::{Command, Count, FEED, Message, Outcome, Request, Streams};
+use palpate_drive::framing::{LINE_BYTES, LinkCounters, Receiver, encode};
+use palpate_drive::link::{Command, CountersMessage, FEED, Message, Request, RequestOutcome, Streams};
 use palpate_drive::{INPUT_BYTES, Input};
 
 use super::port::Port;
@@ -109,7 +109,7 @@ impl Client {
     ///
     /// # Errors
     /// The port is gone, or no answer comes.
-    pub fn request(&mut self, command: Command<'_>, mut take: impl FnMut(Message<'_>)) -> Result<Outcome> {
+    pub fn request(&mut self, command: Command<'_>, mut take: impl FnMut(Message<'_>)) -> Result<RequestOutcome> {
         let sent = self.send(command)?;
         let since = Instant::now();
         let mut answer = None;
@@ -129,10 +129,10 @@ impl Client {
     ///
     /// # Errors
     /// As [`Self::request`].
-    pub fn ask(&mut self, command: Command<'_>, mut take: impl FnMut(Message<'_>)) -> Result<Outcome> {
+    pub fn ask(&mut self, command: Command<'_>, mut take: impl FnMut(Message<'_>)) -> Result<RequestOutcome> {
         let mut last = self.request(command, &mut take);
         for _ in 1..TRIES {
-            if !matches!(last, Ok(Outcome::NoRoom) | Err(_)) {
+            if !matches!(last, Ok(RequestOutcome::NoRoom) | Err(_)) {
                 break;
             }
             std::thread::sleep(PAUSE);
@@ -147,7 +147,7 @@ impl Client {
     /// As [`Self::request`], or the drive refuses `what`.
     pub fn demand(&mut self, command: Command<'_>, what: &str) -> Result<()> {
         match self.ask(command, |_| ())? {
-            Outcome::Done => Ok(()),
+            RequestOutcome::Done => Ok(()),
             other => bail!("the drive refuses {what}: {}", in_words(other)),
         }
     }
@@ -187,7 +187,7 @@ impl Client {
     ///
     /// # Errors
     /// As [`Self::request`].
-    pub fn counters(&mut self) -> Result<Count> {
+    pub fn counters(&mut self) -> Result<CountersMessage> {
         let mut counters = None;
         self.ask(Command::Counters, |message| {
             if let Message::Counters(found) = message {
@@ -205,8 +205,8 @@ impl Client {
         let (now, later) = inputs.split_at(inputs.len().min(FEED));
         let bytes: Vec<u8> = now.iter().flat_map(|input| <[u8; INPUT_BYTES]>::from(*input)).collect();
         match self.request(Command::Feed(&bytes), take)? {
-            Outcome::Done => Ok(later),
-            Outcome::NoRoom => {
+            RequestOutcome::Done => Ok(later),
+            RequestOutcome::NoRoom => {
                 std::thread::sleep(PAUSE);
                 Ok(inputs)
             }
@@ -216,7 +216,7 @@ impl Client {
 
     /// What came that was no message.
     #[must_use]
-    pub fn tally(&self) -> Tally {
-        self.receiver.tally()
+    pub fn link_counters(&self) -> LinkCounters {
+        self.receiver.link_counters()
     }
 }

@@ -1,6 +1,6 @@
 //! From a recording to the words that the sensors of a drive would send.
 
-use palpate_drive::{Calibration, Input, Notes, PositionSensor, Scale, ads8681, as5047p};
+use palpate_drive::{Calibration, Input, InputStatus, PositionSensor, Scale, ads8681, as5047p};
 
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -32,5 +32,5 @@ fn word(depth: f64, force: f64, calibration: &Calibration, scale: &Scale) -> Inp
         PositionSensor::Quadrature => ((depth.wrapping_add(calibration.surface) & 0xffff) as u16, 0),
     };
     let force = ads8681::word(code.clamp(0, 0xffff) as u16, calibration.range);
-    Input { angle, diagnostics, force, elapsed: 1, notes: Notes::empty() }
+    Input { angle, diagnostics, force, elapsed: 1, status: InputStatus::empty() }
 }

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 use anyhow::{Context as _, Result, ensure};
-use palpate_drive::link::Seen;
+use palpate_drive::link::SampleMessage;
 use palpate_drive::{Calibration, Settings, TICK_HZ};
 
 use crate::outfile::OutFile;
@@ -24,7 +24,7 @@ pub struct Taken {
 
 impl Taken {
     /// Takes a sample. Those before the estimator began anew are no part of the recording.
-    pub fn take(&mut self, seen: &Seen) {
+    pub fn take(&mut self, seen: &SampleMessage) {
         let steps = u32::from(seen.input.elapsed.max(1));
         if let Some(last) = self.last.replace(seen.tick) {
             self.unheard += seen.tick.wrapping_sub(last).saturating_sub(steps);

@@ -5,8 +5,8 @@ use std::io::IsTerminal as _;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use palpate::Flags;
-use palpate_drive::link::{Count, Told};
-use palpate_drive::{Calibration, Faults, Standing, TICK_HZ};
+use palpate_drive::link::{CountersMessage, EstimateMessage};
+use palpate_drive::{Calibration, Faults, TICK_HZ, Validity};
 
 use super::About;
 
@@ -28,7 +28,7 @@ impl Screen {
     }
 
     /// Shows an estimate.
-    pub fn show(&self, told: &Told, _: &Calibration) {
+    pub fn show(&self, told: &EstimateMessage, _: &Calibration) {
         let text = estimate(told);
         if self.terminal {
             self.line.set_message(text);
@@ -52,16 +52,16 @@ impl Default for Screen {
 
 /// An estimate in a line.
 #[must_use]
-pub fn estimate(told: &Told) -> String {
+pub fn estimate(told: &EstimateMessage) -> String {
     let seconds = f64::from(told.tick) / f64::from(TICK_HZ);
     let (k, b) = (told.impedance, told.half_width);
-    let what = match told.standing {
-        Standing::Void => "no estimate".to_owned(),
+    let what = match told.validity {
+        Validity::Void => "no estimate".to_owned(),
         _ if told.flags & Flags::NO_CONTACT.bits() != 0 => "no contact".to_owned(),
         _ if !b.stiffness.is_finite() => "in contact, nothing known yet".to_owned(),
         _ => format!("K {} N/m, B {} N s/m", interval(k.stiffness, b.stiffness), interval(k.damping, b.damping)),
     };
-    let held = if told.standing == Standing::Held { ", held" } else { "" };
+    let held = if told.validity == Validity::Held { ", held" } else { "" };
     let faults = told.faults();
     let faults = if faults.is_empty() { String::new() } else { format!("  FAULT {}", names(faults)) };
     format!("{seconds:9.2} s  {what}{held}{faults}")
@@ -103,11 +103,11 @@ pub fn identity(about: &About) -> String {
 
 /// The counters as a table.
 #[must_use]
-pub fn counters(count: &Count) -> String {
+pub fn counters(count: &CountersMessage) -> String {
     let mut text = String::new();
     let [ticks, used, restarts, tares] = count.others;
     let [least, most] = count.latency;
-    let tally = count.tally;
+    let link_counters = count.link_counters;
     let mut row = |name: &str, value: u32| {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{name:<28}{value:>12}");
@@ -118,17 +118,17 @@ pub fn counters(count: &Count) -> String {
         ("estimator begun anew", restarts),
         ("tares refused", tares),
         ("reports dropped", count.dropped),
-        ("bytes lost on the way in", count.deaf),
+        ("bytes lost on the way in", count.rx_overruns),
         ("ticks without a fed input", count.starved),
         ("least latency, cycles", least),
         ("most latency, cycles", most),
         ("longest interrupt, cycles", count.longest),
-        ("frames heard", tally.frames),
-        ("frames oversized", tally.oversized),
-        ("frames malformed", tally.malformed),
-        ("frames of a wrong CRC", tally.checksum),
-        ("frames of another version", tally.version),
-        ("requests refused", tally.refused),
+        ("frames heard", link_counters.frames),
+        ("frames oversized", link_counters.oversized),
+        ("frames malformed", link_counters.malformed),
+        ("frames of a wrong CRC", link_counters.checksum),
+        ("frames of another version", link_counters.version),
+        ("requests refused", link_counters.refused),
     ] {
         row(name, value);
     }

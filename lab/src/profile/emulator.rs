@@ -10,7 +10,7 @@ use palpate_drive::replay_format::{CONFIG_BYTES, encode_config, encode_sample};
 use super::cycles::cost;
 use super::image::Image;
 use super::trial;
-use crate::device;
+use crate::qemu_bench;
 
 /// Runs the image and hands out what it and the plugin wrote.
 pub struct Emulator {
@@ -88,7 +88,7 @@ pub(super) fn counter() -> Result<PathBuf> {
         let files = message["filenames"].as_array()?.iter().filter_map(|file| file.as_str());
         files.map(PathBuf::from).find(|file| file.extension().is_some_and(|e| e == "so" || e == "dylib" || e == "dll"))
     };
-    device::cargo(&["--release", "--package", "palpate-counter"], "palpate_counter", library)
+    qemu_bench::cargo(&["--release", "--package", "palpate-counter"], "palpate_counter", library)
 }
 
 /// One line an instruction: address, bytes, least and most cycles, saved behind an access, an access itself, registers read

@@ -11,9 +11,9 @@ use palpate_drive::{Calibration, Input, Settings};
 use super::counts::read_plugin;
 use super::emulator::{counter, table};
 use super::image::Image;
-use crate::device;
-use crate::emulated::{DriveImage, Emulated, Pace};
 use crate::listen::{Client, inputs};
+use crate::qemu_bench;
+use crate::qemu_drive::{ClockMode, DriveImage, QemuDrive};
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::simulate;
@@ -70,7 +70,7 @@ pub fn interrupt_costs() -> Result<Vec<InterruptCost>> {
 
 /// Four seconds of the bench: two onsets and two losses.
 fn trial() -> Result<Vec<Input>> {
-    let mut rig = Rig::read(&device::project()?.join("lab/rigs/bench.toml"))?;
+    let mut rig = Rig::read(&qemu_bench::project()?.join("lab/rigs/bench.toml"))?;
     rig.simulation.duration_s = 4.0;
     if let Some(reference) = &mut rig.reference {
         (reference.period_s, reference.contact_s) = (2.0, 1.2);
@@ -100,7 +100,7 @@ impl Gauge {
             costs.display(),
             counts.display()
         );
-        let running = self.drive.start(Pace::Exact, None, &["-plugin", &plugin])?;
+        let running = self.drive.start(ClockMode::Exact, None, &["-plugin", &plugin])?;
         let mut client = running.client()?;
         run(&mut client, settings, words)?;
         finish(running, what, &counts)
@@ -131,7 +131,7 @@ fn run(client: &mut Client, settings: Option<Settings>, words: &[Input]) -> Resu
     Ok(())
 }
 
-fn finish(running: Emulated, what: &str, counts: &std::path::Path) -> Result<InterruptCost> {
+fn finish(running: QemuDrive, what: &str, counts: &std::path::Path) -> Result<InterruptCost> {
     running.quit()?;
     let text = std::fs::read_to_string(counts).context("the plugin wrote no counts")?;
     let cases = read_plugin(&text)?;

@@ -1,7 +1,7 @@
 //! The recording that every profile is of: contact, its loss, a material that jumps, an onset on something stiff.
 
 use anyhow::{Result, anyhow};
-use palpate::{BenchConfig, Observation, Sample, Stream, StreamConfig};
+use palpate::{EstimatorBankConfig, Observation, Sample, Stream, StreamConfig};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
@@ -21,8 +21,8 @@ const COURSE: [(f64, Option<f64>); 7] = [
 ];
 
 /// The settings of all estimators: the paper's.
-pub fn config() -> BenchConfig {
-    BenchConfig::every(StreamConfig::BENCH)
+pub fn config() -> EstimatorBankConfig {
+    EstimatorBankConfig::all_methods(StreamConfig::BENCH)
 }
 
 /// The samples: 10 mm deep with a dither of 3.3 mm at 10 Hz, B = 5 N s/m, 0.09 N of noise, 0.1 mm a count. The roots and

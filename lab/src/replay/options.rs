@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
-use palpate::{BENCH_WINDOW, BlockConfig, ConfigError, EwrlsConfig, LowPass, Method, SprlsConfig};
+use palpate::{BANK_WINDOW, BlockConfig, ConfigError, EwrlsConfig, LowPass, Method, SprlsConfig};
 
 use crate::error::UsageError;
 
@@ -14,7 +14,7 @@ pub struct Options {
     #[arg(long = "method", value_name = "NAME,...", value_delimiter = ',', default_value = "ewrls,sprls,bls,blmf", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).try_map(|name| method(&name)))]
     pub methods: Vec<Method>,
     /// Window of the block methods and reset interval of reset_rls, in samples
-    #[arg(long, value_name = "N", default_value_t = Self::default().window, value_parser = clap::value_parser!(u16).range(2..=BENCH_WINDOW as i64))]
+    #[arg(long, value_name = "N", default_value_t = Self::default().window, value_parser = clap::value_parser!(u16).range(2..=BANK_WINDOW as i64))]
     pub window: u16,
     /// Forgetting factor of ewrls
     #[arg(long, value_name = "LAMBDA", default_value_t = Self::default().forgetting)]

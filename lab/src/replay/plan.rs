@@ -4,8 +4,9 @@ use std::path::Path;
 
 use anyhow::Result;
 use palpate::{
-    Bench, BenchConfig, BlockConfig, ContactLoss, EwrlsConfig, FrontEndConfig, GateConfig, GradientConfig, Method,
-    Methods, Observation, ResetRlsConfig, Sample, Sensors, SprlsConfig, StreamConfig, Units, Velocity,
+    BlockConfig, ContactDetectorConfig, ContactLoss, EstimatorBank, EstimatorBankConfig, EwrlsConfig, FrontEndConfig,
+    GradientConfig, Method, Methods, Observation, ResetRlsConfig, Sample, SensorResolution, SprlsConfig, StreamConfig,
+    Units, Velocity,
 };
 
 use super::options::{LossChoice, Options, VelocityChoice};
@@ -17,7 +18,7 @@ use crate::sensors::Figures;
 /// What the estimators are fed, and what the reader should know about it.
 pub struct Plan {
     /// Settings of the bench.
-    pub config: BenchConfig,
+    pub config: EstimatorBankConfig,
     /// The methods that run, in the order asked for.
     pub methods: Vec<Method>,
     /// Depth below the surface, force above its zero, time since the sample before.
@@ -60,11 +61,11 @@ impl Plan {
                 VelocityChoice::Matched => Velocity::Matched,
             },
             bilateral: contact.bilateral,
-            gate: gate(&figures),
+            contact_detector: contact_detector(&figures),
             units,
         };
         let config = bench(front_end, &figures, options);
-        Bench::new(&config).map_err(|error| options.fault(error))?;
+        EstimatorBank::new(&config).map_err(|error| options.fault(error))?;
         Ok(Self {
             config,
             methods: in_order(&options.methods),
@@ -112,9 +113,9 @@ fn samples(depth: &[f64], force: &[f64], time: &[f64], period: f64) -> Vec<Sampl
 
 /// Thresholds from what the sensor resolves and how it is noisy: on the paper's bench (0.05 N a count, 0.09 N of noise)
 /// 0.23 N and 0.05 N.
-fn gate(figures: &Figures) -> GateConfig {
+fn contact_detector(figures: &Figures) -> ContactDetectorConfig {
     let (count, noise) = figures.force.map_or((0.0, 0.0), |force| (force.resolution, force.noise));
-    GateConfig {
+    ContactDetectorConfig {
         on_force: (4.0 * count).max(2.5 * noise) as f32,
         off_force: count.max(0.5 * noise) as f32,
         off_samples: 5,
@@ -145,10 +146,10 @@ fn percentile(values: impl Iterator<Item = f64>) -> f64 {
     *above.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
-fn bench(front_end: FrontEndConfig, figures: &Figures, options: &Options) -> BenchConfig {
+fn bench(front_end: FrontEndConfig, figures: &Figures, options: &Options) -> EstimatorBankConfig {
     let stream = StreamConfig {
         front_end,
-        sensors: Sensors {
+        sensors: SensorResolution {
             position_resolution: figures.position.resolution as f32,
             force_noise: figures.force.map_or(0.0, |force| force.noise) as f32,
         },
@@ -162,7 +163,7 @@ fn bench(front_end: FrontEndConfig, figures: &Figures, options: &Options) -> Ben
     let initial_covariance = options.initial_covariance;
     // Room to grow from wherever it starts, within what the library takes.
     let covariance_limit = (100.0 * initial_covariance).clamp(1e6, 1e9);
-    BenchConfig {
+    EstimatorBankConfig {
         stream,
         methods: options.methods.iter().fold(Methods::default(), |methods, method| methods.with(*method)),
         rls: EwrlsConfig { initial_covariance, covariance_limit, ..EwrlsConfig::rls() },

@@ -1,7 +1,7 @@
 //! What the estimators returned, method by method.
 
 use palpate::{Estimate, Flags, Method, Rejection, Sample};
-use palpate_drive::replay_format::Outcome;
+use palpate_drive::replay_format::UpdateResult;
 
 use super::plan::Plan;
 use crate::page;
@@ -21,7 +21,7 @@ impl Trace {
     }
 
     /// Takes the outcome of the next sample. A rejected one holds what was before it.
-    pub fn take(&mut self, outcome: Outcome) {
+    pub fn take(&mut self, outcome: UpdateResult) {
         for (method, estimates) in &mut self.columns {
             let held = estimates.last().copied().unwrap_or(Estimate::NO_CONTACT);
             estimates.push(outcome.map_or(held, |all| all[*method as usize]));
@@ -41,7 +41,7 @@ impl Trace {
         self.rejections.get(k).copied().flatten()
     }
 
-    /// The contact gate, sample by sample.
+    /// The contact detection, sample by sample.
     #[must_use]
     pub fn contact(&self) -> Vec<bool> {
         let first = self.columns.first().map_or(&[][..], |(_, estimates)| estimates);
@@ -59,7 +59,7 @@ impl Trace {
         }
         let contact = self.contact().into_iter().filter(|touching| *touching).count();
         if contact == 0 {
-            let on = plan.config.stream.front_end.gate.on_force;
+            let on = plan.config.stream.front_end.contact_detector.on_force;
             notices.push(format!("no contact: no force above {on:.3e} while the tool was in the surface"));
             return notices;
         }

@@ -3,8 +3,8 @@
 use anyhow::{Result, anyhow};
 use palpate::{
     AdaptiveWindow, AdaptiveWindowConfig, BlockConfig, BlockLeastMeanFourth, BlockLeastSquares, ConfigError, CusumRls,
-    Direction, DirectionalRls, Estimate, Ewrls, EwrlsConfig, FrontEndConfig, Law, Prior, Rejection, Sample, Sprls,
-    SprlsConfig, Stream, StreamConfig, Tracker, Velocity,
+    Direction, DirectionalRls, Estimate, EstimatorState, Ewrls, EwrlsConfig, FrontEndConfig, Prior, Rejection, Sample,
+    Sprls, SprlsConfig, Stream, StreamConfig, UpdateLaw, Velocity,
 };
 
 /// Longest window of the study.
@@ -133,15 +133,15 @@ impl Running {
         made.map_err(|error| anyhow!("{}: {error}", estimator.name()))
     }
 
-    fn of<L: Law + Send + 'static>(config: StreamConfig, law: Result<L, ConfigError>) -> Result<Self, ConfigError>
+    fn of<L: UpdateLaw + Send + 'static>(config: StreamConfig, law: Result<L, ConfigError>) -> Result<Self, ConfigError>
     where
         L::State: Send,
     {
         let mut stream = Stream::<LONGEST>::new(config)?;
-        let mut tracker = Tracker::new(law?);
+        let mut tracker = EstimatorState::new(law?);
         let update = move |sample| {
             let event = stream.update(sample)?;
-            Ok(tracker.follow(&stream, &event))
+            Ok(tracker.update(&stream, &event))
         };
         Ok(Self(Box::new(update)))
     }
@@ -149,10 +149,10 @@ impl Running {
     /// The paper's EWRLS, its start taken off each estimate; in SI units, in which the bench is.
     fn without_start(config: StreamConfig) -> Result<Self, ConfigError> {
         let mut stream = Stream::<1>::new(config)?;
-        let mut tracker = Tracker::new(ewrls(300, PAPER_COVARIANCE)?);
+        let mut tracker = EstimatorState::new(ewrls(300, PAPER_COVARIANCE)?);
         let update = move |sample| {
             let event = stream.update(sample)?;
-            let estimate = tracker.follow(&stream, &event);
+            let estimate = tracker.update(&stream, &event);
             let told = if event.reading.contact { tracker.state().without_start() } else { None };
             Ok(Estimate { impedance: told.unwrap_or(estimate.impedance), ..estimate })
         };

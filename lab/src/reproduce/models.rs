@@ -202,7 +202,7 @@ fn identify<const P: usize>(model: ContactModel, spreads: [f32; P], trials: &[Pa
             correlated_samples: stream.correlated_samples(),
         };
         let law = ParameterRls::new(config).map_err(|error| anyhow!("{error}"))?;
-        let mut state = law.start();
+        let mut state = law.initial_state();
         let (mut errors, mut forces) = (0.0, 0.0);
         for sample in trial.samples(1) {
             let row = stream.update(sample).map_err(|why| anyhow!("a sample was rejected: {why:?}"))?;

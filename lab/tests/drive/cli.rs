@@ -3,7 +3,7 @@
 use std::process::{Command, Stdio};
 
 use palpate_drive::Calibration;
-use palpate_lab::emulated::Pace;
+use palpate_lab::qemu_drive::ClockMode;
 
 use super::rig::{bench, image};
 
@@ -18,7 +18,7 @@ fn text(bytes: &[u8]) -> String {
 #[test]
 fn listen_feeds_records_and_shows_and_replay_takes_the_recording() {
     let Some(image) = image() else { return };
-    let drive = image.start(Pace::Exact, None, &[]).unwrap_or_else(|error| panic!("{error:#}"));
+    let drive = image.start(ClockMode::Exact, None, &[]).unwrap_or_else(|error| panic!("{error:#}"));
     let folder = tempfile::tempdir().expect("a folder");
     let (rig, recording) = bench(6.0);
     let [rig_path, trial, out] = ["rig.toml", "trial.csv", "heard.csv"].map(|name| folder.path().join(name));
@@ -53,7 +53,7 @@ fn listen_says_what_is_wrong() {
     let line = palpate().args(["listen", "--port", "x", "--window", "5000"]).output().expect("palpate runs");
     assert_eq!(line.status.code(), Some(2), "{}", text(&line.stderr));
     let Some(image) = image() else { return };
-    let drive = image.start(Pace::Exact, None, &[]).unwrap_or_else(|error| panic!("{error:#}"));
+    let drive = image.start(ClockMode::Exact, None, &[]).unwrap_or_else(|error| panic!("{error:#}"));
     let mut refused = palpate();
     refused.args(["listen", "--for", "1", "--forgetting", "1.5", "--port"]).arg(drive.socket());
     let refused = refused.output().expect("palpate runs");

@@ -1,8 +1,8 @@
 //! What the image does where things are missing or damaged.
 
 use palpate::Method;
-use palpate_drive::link::{Command, Message, Outcome, Source, Streams};
-use palpate_drive::{CALIBRATION_BYTES, Calibration, Faults, Input, Order, Settings, Standing};
+use palpate_drive::link::{Command, Message, RequestOutcome, Source, Streams};
+use palpate_drive::{CALIBRATION_BYTES, Calibration, Faults, Input, Order, Settings, Validity};
 
 use super::rig::{drive, image, words};
 
@@ -20,13 +20,13 @@ fn without_sensors_it_comes_up_tells_of_them_and_keeps_its_kilohertz() {
     let mut told = Vec::new();
     while told.len() < 50 {
         client
-            .poll(|message| told.extend(matches!(message, Message::Estimate(_)).then(|| as_told(&message))))
+            .poll(|message| told.extend(matches!(message, Message::Estimate(_)).then(|| as_message(&message))))
             .expect("a line");
     }
     for estimate in &told {
         // A line that hangs low: the encoder is not ready, the converter's range is wrong.
         let wanted = Faults::POSITION_ALARM | Faults::FORCE_PARITY | Faults::CALIBRATION;
-        assert_eq!((estimate.faults(), estimate.standing), (wanted, Standing::Void), "{estimate:?}");
+        assert_eq!((estimate.faults(), estimate.validity), (wanted, Validity::Void), "{estimate:?}");
         assert_eq!(
             (estimate.impedance.stiffness, estimate.half_width.stiffness, estimate.effort),
             (0.0, f32::INFINITY, 0.0)
@@ -44,7 +44,7 @@ fn without_sensors_it_comes_up_tells_of_them_and_keeps_its_kilohertz() {
     assert!(drive.runs().expect("a process"));
 }
 
-fn as_told(message: &Message<'_>) -> palpate_drive::link::Told {
+fn as_message(message: &Message<'_>) -> palpate_drive::link::EstimateMessage {
     match message {
         Message::Estimate(told) => *told,
         other => panic!("{other:?}"),
@@ -86,7 +86,7 @@ fn whatever_is_sent_it_goes_on_and_counts_what_it_refuses() {
         client.write(&[0]).expect("a line");
         client.about().unwrap_or_else(|error| panic!("{error:#}"));
     }
-    let before = client.counters().expect("counters").tally;
+    let before = client.counters().expect("counters").link_counters;
     assert!(before.malformed + before.checksum + before.oversized > 40, "{before:?}");
     let refused = |client: &mut palpate_lab::listen::Client, command, outcome| {
         assert_eq!(client.request(command, |_| ()).expect("an answer"), outcome, "{command:?}");
@@ -101,12 +101,12 @@ fn whatever_is_sent_it_goes_on_and_counts_what_it_refuses() {
         Settings { initial_covariance: -1.0, ..d },
         Settings { hold: 0, ..d },
     ] {
-        refused(&mut client, Command::Choose(wrong), Outcome::OutOfRange);
+        refused(&mut client, Command::Choose(wrong), RequestOutcome::OutOfRange);
     }
     let word: [u8; 10] = Input::NOTHING.into();
-    refused(&mut client, Command::Feed(&word), Outcome::NotNow);
+    refused(&mut client, Command::Feed(&word), RequestOutcome::NotNow);
     let after = client.counters().expect("counters");
-    assert_eq!(after.tally.refused - before.refused, 8);
+    assert_eq!(after.link_counters.refused - before.refused, 8);
     assert_eq!(client.about().expect("settings").settings, d, "and nothing was changed");
     assert_eq!(after.faults[index(Faults::OVERRUN)], 0);
     assert!(drive.runs().expect("a process"));

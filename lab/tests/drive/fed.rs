@@ -1,10 +1,10 @@
 //! Hardware in the loop: the sensors' words over the link, and the host's bits back.
 
 use palpate::Method;
-use palpate_drive::framing::Tally;
-use palpate_drive::link::{Command, Source, Told};
+use palpate_drive::framing::LinkCounters;
+use palpate_drive::link::{Command, EstimateMessage, Source};
 use palpate_drive::replay_format::estimate_words;
-use palpate_drive::{Calibration, Faults, Input, Notes, Settings, Standing, as5047p};
+use palpate_drive::{Calibration, Faults, Input, InputStatus, Settings, Validity, as5047p};
 use palpate_lab::listen::Taken;
 use palpate_lab::replay::{Options, Runner, replay};
 use palpate_lab::rig::Rig;
@@ -17,9 +17,9 @@ fn assert_same(what: &str, settings: Settings, revision: u8, fed: &[Input], hear
     assert_eq!((heard.seen.len(), heard.told.len()), (host.len(), host.len()), "{what}");
     for (k, ((seen, told), (host_seen, host_told))) in heard.seen.iter().zip(&heard.told).zip(host).enumerate() {
         assert_eq!(*seen, host_seen, "{what}, sample {k}");
-        let words = |told: &Told| (estimate_words(&told.estimate()), told.effort.to_bits());
+        let words = |told: &EstimateMessage| (estimate_words(&told.estimate()), told.effort.to_bits());
         assert_eq!(words(told), words(&host_told), "{what}, sample {k}: {told:?}, {host_told:?}");
-        let rest = |told: &Told| (told.tick, told.faults(), told.standing, told.revision);
+        let rest = |told: &EstimateMessage| (told.tick, told.faults(), told.validity, told.revision);
         assert_eq!(rest(told), rest(&host_told), "{what}, sample {k}");
     }
 }
@@ -31,7 +31,7 @@ fn every_estimate_of_what_is_fed_has_the_bits_of_the_host() {
     for method in [Method::Bls, Method::Sprls, Method::NewtonBlmf] {
         let (_drive, mut client) = drive(image, None);
         // A call that came while the line was being set up may have been heard in part.
-        let before = client.counters().expect("counters").tally;
+        let before = client.counters().expect("counters").link_counters;
         let settings = Settings { method, window: 200, ..Settings::default() };
         client.demand(Command::Choose(settings), "the settings").unwrap_or_else(|error| panic!("{error:#}"));
         let heard = feed(&mut client, &words);
@@ -40,9 +40,9 @@ fn every_estimate_of_what_is_fed_has_the_bits_of_the_host() {
         assert!(touched > 3_000, "{}: {touched} samples of contact", method.name());
         let count = client.counters().expect("counters");
         // What was refused for want of room was sent again.
-        let broken = |tally: Tally| tally.lost() - tally.refused;
-        let lost = broken(count.tally) - broken(before);
-        assert_eq!((count.dropped, count.deaf, lost), (0, 0, 0), "nothing was lost on the way");
+        let broken = |link_counters: LinkCounters| link_counters.lost() - link_counters.refused;
+        let lost = broken(count.link_counters) - broken(before);
+        assert_eq!((count.dropped, count.rx_overruns, lost), (0, 0, 0), "nothing was lost on the way");
         let overruns = count.faults[Faults::OVERRUN.bits().trailing_zeros() as usize];
         assert_eq!(overruns, 0, "every update ends within its millisecond");
     }
@@ -66,7 +66,7 @@ fn faults_that_are_fed_have_the_bits_of_the_host_too() {
         match draw() % 8 {
             0 => Input { angle: input.angle ^ 1 << (draw() % 16), ..input },
             1 => Input { force: input.force ^ 1 << (draw() % 32), ..input },
-            2 => Input { notes: Notes::from_bits_truncate(draw() as u8), ..input },
+            2 => Input { status: InputStatus::from_bits_truncate(draw() as u8), ..input },
             3 => Input { elapsed: draw() as u8, ..input },
             4 => Input { angle: as5047p::with_parity(draw() as u16 & 0x3fff), ..input },
             5 => Input::NOTHING,
@@ -77,10 +77,10 @@ fn faults_that_are_fed_have_the_bits_of_the_host_too() {
     let fed: Vec<Input> = sound.iter().enumerate().map(|(k, &input)| upset(k, input, &mut draw)).collect();
     let heard = feed(&mut client, &fed);
     assert_same("storm", Settings::default(), 0, &fed, &heard);
-    let standing = |wanted| heard.told.iter().filter(|told| told.standing == wanted).count();
-    assert!(standing(Standing::Held) > 100, "{} held", standing(Standing::Held));
+    let validity = |wanted| heard.told.iter().filter(|told| told.validity == wanted).count();
+    assert!(validity(Validity::Held) > 100, "{} held", validity(Validity::Held));
     let last = heard.told.last().expect("an estimate");
-    assert_eq!((last.faults(), last.standing), (Faults::CALIBRATION, Standing::Live), "and it has come back");
+    assert_eq!((last.faults(), last.validity), (Faults::CALIBRATION, Validity::Live), "and it has come back");
 }
 
 #[test]
@@ -90,8 +90,8 @@ fn a_recording_made_through_the_link_replays_to_the_same_estimates() {
     // Two samples are lost and one is upset on the way: the recording has a gap there, and a replay knows it.
     let mut fed = words(8.0);
     fed[4_000].angle ^= 1;
-    fed[5_000].notes = Notes::NO_SAMPLE;
-    fed[5_001].notes = Notes::NO_SAMPLE;
+    fed[5_000].status = InputStatus::NO_SAMPLE;
+    fed[5_001].status = InputStatus::NO_SAMPLE;
     let heard = feed(&mut client, &fed);
     client.demand(Command::Source(Source::Sensors), "the sensors").unwrap_or_else(|error| panic!("{error:#}"));
     let mut taken = Taken::default();
@@ -111,7 +111,7 @@ fn a_recording_made_through_the_link_replays_to_the_same_estimates() {
     let replayed = replay(&Runner::Host, &rig, &toml, recording, &options).unwrap_or_else(|error| panic!("{error:#}"));
     let columns = replayed.trace.columns();
     let (_, estimates) = columns.first().expect("a method");
-    let live: Vec<_> = heard.told.iter().filter(|told| told.standing == Standing::Live).collect();
+    let live: Vec<_> = heard.told.iter().filter(|told| told.validity == Validity::Live).collect();
     assert_eq!(live.len(), estimates.len());
     for (k, (told, estimate)) in live.iter().zip(estimates).enumerate() {
         let device = estimate_words(&told.estimate());

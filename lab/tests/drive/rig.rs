@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use palpate_drive::link::{Command, Message, Seen, Source, Streams, Told};
-use palpate_drive::{Bounds, Calibration, Counters, Cycle, Estimator, Faults, Input, Notes, Settings};
-use palpate_lab::device::project;
-use palpate_lab::emulated::{DriveImage, Emulated, Pace};
+use palpate_drive::link::{Command, EstimateMessage, Message, SampleMessage, Source, Streams};
+use palpate_drive::{Bounds, Calibration, Counters, Cycle, Estimator, Faults, Input, InputStatus, Settings};
 use palpate_lab::listen::{Client, inputs};
+use palpate_lab::qemu_bench::project;
+use palpate_lab::qemu_drive::{ClockMode, DriveImage, QemuDrive};
 use palpate_lab::recording::Recording;
 use palpate_lab::rig::Rig;
 use palpate_lab::simulate;
@@ -28,8 +28,8 @@ pub fn image() -> Option<&'static DriveImage> {
 }
 
 /// A drive that has come up, and a client on its line.
-pub fn drive(image: &DriveImage, calibration: Option<&[u8]>) -> (Emulated, Client) {
-    let drive = image.start(Pace::Exact, calibration, &[]).unwrap_or_else(|error| panic!("{error:#}"));
+pub fn drive(image: &DriveImage, calibration: Option<&[u8]>) -> (QemuDrive, Client) {
+    let drive = image.start(ClockMode::Exact, calibration, &[]).unwrap_or_else(|error| panic!("{error:#}"));
     let client = drive.client().unwrap_or_else(|error| panic!("{error:#}"));
     (drive, client)
 }
@@ -54,8 +54,8 @@ pub fn words(seconds: f64) -> Vec<Input> {
 
 /// What came back for what was fed, in order.
 pub struct Heard {
-    pub seen: Vec<Seen>,
-    pub told: Vec<Told>,
+    pub seen: Vec<SampleMessage>,
+    pub told: Vec<EstimateMessage>,
 }
 
 /// Feeds `words` to an estimator that begins with them, with every sample and estimate told, and waits until all are back.
@@ -89,14 +89,14 @@ pub fn feed(client: &mut Client, words: &[Input]) -> Heard {
 }
 
 /// What the host makes of `words`, after as many ticks of lines that hang low as a drive without sensors had before them.
-pub fn host(settings: Settings, revision: u8, first: u32, words: &[Input]) -> Vec<(Seen, Told)> {
+pub fn host(settings: Settings, revision: u8, first: u32, words: &[Input]) -> Vec<(SampleMessage, EstimateMessage)> {
     let (calibration, found) = (Calibration::DEFAULT, Faults::CALIBRATION);
     let counters = Counters::new();
     let mut estimator = Estimator::new(&settings, &calibration, revision).expect("sound settings");
     let mut cycle = Cycle::new(calibration, &mut estimator, &counters, Bounds::NO_EFFORT, found);
     (1..first).for_each(|_| {
-        cycle.tick(Input { notes: Notes::empty(), ..Input::NOTHING });
+        cycle.tick(Input { status: InputStatus::empty(), ..Input::NOTHING });
     });
     let reports = words.iter().map(|&word| cycle.tick(word));
-    reports.map(|report| (Seen::of(&report), Told::of(&report))).collect()
+    reports.map(|report| (SampleMessage::of(&report), EstimateMessage::of(&report))).collect()
 }

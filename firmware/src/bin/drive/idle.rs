@@ -7,41 +7,44 @@ use cortex_m_rt::entry;
 use defmt_rtt as _;
 use heapless::spsc::{Consumer, Producer, Queue};
 use palpate_drive::framing::{LINE_BYTES, encode};
-use palpate_drive::link::{Count, Identity, Message, Outcome, Seen, Source, Streams, Told};
+use palpate_drive::link::{
+    CountersMessage, EstimateMessage, Identity, Message, RequestOutcome, SampleMessage, Source, Streams,
+};
 use palpate_drive::{
-    Bounds, Calibration, Choice, Counters, Cycle, Desk, Estimator, Faults, Input, Report, Scale, Settings, Wish,
+    Bounds, Calibration, Counters, Cycle, DecodedRequest, Estimator, Faults, Input, Report, RequestDecoder, Scale,
+    Settings, ValidatedSettings,
 };
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use super::board::{self, Board};
 use super::flash;
-use super::line::{self, Ear, HEARD, Line};
-use super::tick::{CHOICES, DROPPED, INPUTS, JOBS, Job, LATENCY, LINK_GONE, LONGEST, REPORTS, STARVED, TICKS, Tick};
+use super::line::{self, Line, RX_QUEUE, UartReceiver};
+use super::tick::{DROPPED, INPUTS, JOBS, Job, LATENCY, LINK_GONE, LONGEST, REPORTS, SETTINGS, STARVED, TICKS, Tick};
 
 static COUNTERS: Counters = Counters::new();
 
 /// What interrupts and idle loop hand each other, without a lock.
 struct Queues {
-    heard: Queue<u8, HEARD>,
+    received: Queue<u8, RX_QUEUE>,
     reports: Queue<Report, REPORTS>,
     inputs: Queue<Input, INPUTS>,
     jobs: Queue<Job, JOBS>,
-    choices: Queue<Choice, CHOICES>,
+    new_settings: Queue<ValidatedSettings, SETTINGS>,
 }
 
 #[entry]
 fn main() -> ! {
     static mut QUEUES: Queues = Queues {
-        heard: Queue::new(),
+        received: Queue::new(),
         reports: Queue::new(),
         inputs: Queue::new(),
         jobs: Queue::new(),
-        choices: Queue::new(),
+        new_settings: Queue::new(),
     };
     // Not `Option`s: their `None` is no zero, and would stand in the flash.
     static mut ESTIMATOR: MaybeUninit<Estimator> = MaybeUninit::uninit();
     static mut TICK: MaybeUninit<Tick> = MaybeUninit::uninit();
-    static mut EAR: MaybeUninit<Ear> = MaybeUninit::uninit();
+    static mut UART_RECEIVER: MaybeUninit<UartReceiver> = MaybeUninit::uninit();
 
     let read = flash::calibration();
     let calibration = read.unwrap_or(Calibration::DEFAULT);
@@ -52,26 +55,27 @@ fn main() -> ! {
     defmt::info!("drive, image {=u32:x}, found {=u32:#x}", identity.image, identity.found);
 
     let estimator = build(ESTIMATOR, &settings, &calibration);
-    let (heard, bytes) = QUEUES.heard.split();
+    let (received, bytes) = QUEUES.received.split();
     let (reports, told) = QUEUES.reports.split();
     let (feed, inputs) = QUEUES.inputs.split();
     let (jobs, todo) = QUEUES.jobs.split();
-    let (choose, choices) = QUEUES.choices.split();
+    let (new_settings, settings_to_apply) = QUEUES.new_settings.split();
     let cycle = Cycle::new(calibration, estimator, &COUNTERS, Bounds::NO_EFFORT, board.found);
     let (sensors, supply, source) = (board.sensors, board.supply, Source::Sensors);
-    let tick = Tick { cycle, sensors, supply, source, jobs: todo, choices, inputs, reports, late: false };
+    let tick =
+        Tick { cycle, sensors, supply, source, jobs: todo, settings: settings_to_apply, inputs, reports, late: false };
     TICK.write(tick).hand_over();
-    EAR.write(Ear { receiver: board.receiver, heard }).hand_over();
+    UART_RECEIVER.write(UartReceiver { receiver: board.receiver, received }).hand_over();
     board::start_ticking(&mut board.core);
     board::watch(&mut board.watchdog);
-    let line = Line { sender: board.sender, heard: bytes };
+    let line = Line { sender: board.sender, received: bytes };
     let idle = Idle {
-        desk: Desk::new(),
+        decoder: RequestDecoder::new(),
         line,
         reports: told,
         feed,
         jobs,
-        choose,
+        new_settings,
         calibration,
         settings,
         revision: 0,
@@ -80,7 +84,7 @@ fn main() -> ! {
         source,
         before: Faults::empty(),
         zero: calibration.force_zero,
-        heard_at: 0,
+        received_at: 0,
         watchdog: board.watchdog,
         fed_at: 0,
     };
@@ -117,12 +121,12 @@ fn started<T>(part: Option<T>) -> T {
 }
 
 struct Idle {
-    desk: Desk,
+    decoder: RequestDecoder,
     line: Line,
     reports: Consumer<'static, Report, REPORTS>,
     feed: Producer<'static, Input, INPUTS>,
     jobs: Producer<'static, Job, JOBS>,
-    choose: Producer<'static, Choice, CHOICES>,
+    new_settings: Producer<'static, ValidatedSettings, SETTINGS>,
     calibration: Calibration,
     settings: Settings,
     revision: u8,
@@ -131,7 +135,7 @@ struct Idle {
     source: Source,
     before: Faults,
     zero: f32,
-    heard_at: u32,
+    received_at: u32,
     watchdog: IndependentWatchdog,
     fed_at: u32,
 }
@@ -139,18 +143,18 @@ struct Idle {
 impl Idle {
     fn run(mut self) -> ! {
         loop {
-            while let Some(byte) = self.line.heard.dequeue() {
-                if let Some((number, wish)) = self.desk.hear(byte) {
-                    self.heard_at = TICKS.load(Ordering::Relaxed);
-                    let outcome = self.grant(wish);
-                    if outcome != Outcome::Done {
-                        self.desk.refuse();
+            while let Some(byte) = self.line.received.dequeue() {
+                if let Some((number, request)) = self.decoder.push(byte) {
+                    self.received_at = TICKS.load(Ordering::Relaxed);
+                    let outcome = self.execute(request);
+                    if outcome != RequestOutcome::Done {
+                        self.decoder.refuse();
                     }
-                    self.say(&Message::Answer { number, outcome });
+                    self.send(&Message::Answer { number, outcome });
                 }
             }
             if let Some(report) = self.reports.dequeue() {
-                self.tell(&report);
+                self.publish(&report);
                 continue;
             }
             self.watch();
@@ -165,12 +169,12 @@ impl Idle {
             self.fed_at = now;
             self.watchdog.feed();
         }
-        let silence = now.wrapping_sub(self.heard_at);
+        let silence = now.wrapping_sub(self.received_at);
         let timeout = u32::from(self.settings.link_timeout);
         LINK_GONE.store(timeout > 0 && silence > timeout, Ordering::Relaxed);
     }
 
-    fn say(&mut self, message: &Message<'_>) {
+    fn send(&mut self, message: &Message<'_>) {
         let mut line = [0; LINE_BYTES];
         if let Some(frame) = encode(message, &mut line) {
             self.line.send(frame);
@@ -178,93 +182,97 @@ impl Idle {
     }
 
     /// What was asked to be told of a report; a fault that begins is told in any case that estimates are.
-    fn tell(&mut self, report: &Report) {
+    fn publish(&mut self, report: &Report) {
         let begun = !self.before.contains(report.faults);
         (self.before, self.zero) = (report.faults, report.zero);
         let Streams { estimates, samples } = self.streams;
         if samples {
-            self.say(&Message::Sample(Seen::of(report)));
+            self.send(&Message::Sample(SampleMessage::of(report)));
         }
         if estimates > 0 && (begun || report.tick.is_multiple_of(u32::from(estimates))) {
-            self.say(&Message::Estimate(Told::of(report)));
+            self.send(&Message::Estimate(EstimateMessage::of(report)));
         }
         if begun {
             defmt::warn!("tick {=u32}: faults {=u32:#x}", report.tick, report.faults.bits());
         }
     }
 
-    fn grant(&mut self, wish: Wish) -> Outcome {
-        match wish {
-            Wish::Alive => Outcome::Done,
-            Wish::Identity => self.answer(&Message::Identity(self.identity)),
-            Wish::Calibration => {
+    fn execute(&mut self, request: DecodedRequest) -> RequestOutcome {
+        match request {
+            DecodedRequest::Alive => RequestOutcome::Done,
+            DecodedRequest::Identity => self.answer(&Message::Identity(self.identity)),
+            DecodedRequest::Calibration => {
                 let scale = Scale { zero: self.zero, ..self.calibration.scale() };
                 self.answer(&Message::Calibration { calibration: self.calibration, scale })
             }
-            Wish::Settings => self.answer(&Message::Settings { settings: self.settings, revision: self.revision }),
-            Wish::Counters => self.answer(&Message::Counters(self.count())),
-            Wish::Choose(settings) => self.choose(settings),
-            Wish::Order(order) => self.job(Job::Order(order)),
-            Wish::Stream(streams) => {
-                self.streams = streams;
-                Outcome::Done
+            DecodedRequest::Settings => {
+                self.answer(&Message::Settings { settings: self.settings, revision: self.revision })
             }
-            Wish::Source(source) => {
+            DecodedRequest::Counters => self.answer(&Message::Counters(self.count())),
+            DecodedRequest::Choose(settings) => self.apply_settings(settings),
+            DecodedRequest::Order(order) => self.job(Job::Order(order)),
+            DecodedRequest::Stream(streams) => {
+                self.streams = streams;
+                RequestOutcome::Done
+            }
+            DecodedRequest::Source(source) => {
                 let outcome = self.job(Job::Source(source));
-                if outcome == Outcome::Done {
+                if outcome == RequestOutcome::Done {
                     self.source = source;
                 }
                 outcome
             }
-            Wish::Feed(inputs, used) => self.feed(inputs.get(..used).unwrap_or_default()),
+            DecodedRequest::Feed(inputs, used) => self.feed(inputs.get(..used).unwrap_or_default()),
         }
     }
 
-    fn answer(&mut self, message: &Message<'_>) -> Outcome {
-        self.say(message);
-        Outcome::Done
+    fn answer(&mut self, message: &Message<'_>) -> RequestOutcome {
+        self.send(message);
+        RequestOutcome::Done
     }
 
-    fn job(&mut self, job: Job) -> Outcome {
-        self.jobs.enqueue(job).map_or(Outcome::NoRoom, |()| Outcome::Done)
+    fn job(&mut self, job: Job) -> RequestOutcome {
+        self.jobs.enqueue(job).map_or(RequestOutcome::NoRoom, |()| RequestOutcome::Done)
     }
 
     /// Checks the settings and hands over what follows from them; nothing is changed where one is out of range.
-    fn choose(&mut self, settings: Settings) -> Outcome {
-        if !self.choose.ready() {
-            return Outcome::NoRoom;
+    fn apply_settings(&mut self, settings: Settings) -> RequestOutcome {
+        if !self.new_settings.ready() {
+            return RequestOutcome::NoRoom;
         }
         let revision = self.revision.wrapping_add(1);
-        let Ok(choice) = Choice::of(&settings, &self.calibration, revision) else { return Outcome::OutOfRange };
-        if self.choose.enqueue(choice).is_err() {
-            return Outcome::NoRoom;
+        let Ok(validated) = ValidatedSettings::new(&settings, &self.calibration, revision) else {
+            return RequestOutcome::OutOfRange;
+        };
+        if self.new_settings.enqueue(validated).is_err() {
+            return RequestOutcome::NoRoom;
         }
         (self.settings, self.revision) = (settings, revision);
-        Outcome::Done
+        RequestOutcome::Done
     }
 
     /// All of the inputs or none.
-    fn feed(&mut self, inputs: &[Input]) -> Outcome {
+    fn feed(&mut self, inputs: &[Input]) -> RequestOutcome {
         if self.source != Source::Link {
-            return Outcome::NotNow;
+            return RequestOutcome::NotNow;
         }
         if self.feed.capacity() - self.feed.len() < inputs.len() {
-            return Outcome::NoRoom;
+            return RequestOutcome::NoRoom;
         }
         let taken = inputs.iter().all(|&input| self.feed.enqueue(input).is_ok());
-        if taken { Outcome::Done } else { Outcome::NoRoom }
+        if taken { RequestOutcome::Done } else { RequestOutcome::NoRoom }
     }
 
-    fn count(&self) -> Count {
-        Count {
+    fn count(&self) -> CountersMessage {
+        CountersMessage {
             faults: COUNTERS.faults(),
             others: COUNTERS.others(),
             dropped: DROPPED.load(Ordering::Relaxed),
-            deaf: line::deaf(),
+            rx_overruns: line::rx_overruns(),
             starved: STARVED.load(Ordering::Relaxed),
             latency: [LATENCY[0].load(Ordering::Relaxed), LATENCY[1].load(Ordering::Relaxed)],
             longest: LONGEST.load(Ordering::Relaxed),
-            tally: self.desk.tally(),
+            link_counters: self.decoder.link_counters(),
         }
     }
 }

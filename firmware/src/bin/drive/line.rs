@@ -10,49 +10,49 @@ use stm32f4xx_hal::pac::{USART1, interrupt};
 use stm32f4xx_hal::serial::{Rx, Tx};
 
 /// Bytes that wait for the idle loop: 11 ms of the line.
-pub const HEARD: usize = 1_024;
+pub const RX_QUEUE: usize = 1_024;
 
 /// What the interrupt of the line owns.
-pub struct Ear {
+pub struct UartReceiver {
     /// The receiver.
     pub receiver: Rx<USART1>,
     /// Bytes to the idle loop.
-    pub heard: Producer<'static, u8, HEARD>,
+    pub received: Producer<'static, u8, RX_QUEUE>,
 }
 
-static EAR: AtomicPtr<Ear> = AtomicPtr::new(ptr::null_mut());
-static DEAF: AtomicU32 = AtomicU32::new(0);
+static UART_RECEIVER: AtomicPtr<UartReceiver> = AtomicPtr::new(ptr::null_mut());
+static RX_OVERRUNS: AtomicU32 = AtomicU32::new(0);
 
-impl Ear {
+impl UartReceiver {
     /// Gives `self` to the interrupt for good.
     pub fn hand_over(&'static mut self) {
-        EAR.store(self, Ordering::Release);
+        UART_RECEIVER.store(self, Ordering::Release);
     }
 
     /// One byte, or one fault: never a loop.
-    fn listen(&mut self) {
+    fn receive_byte(&mut self) {
         let lost = match self.receiver.read() {
-            Ok(byte) => self.heard.enqueue(byte).is_err(),
+            Ok(byte) => self.received.enqueue(byte).is_err(),
             Err(nb::Error::WouldBlock) => false,
             Err(nb::Error::Other(_)) => true,
         };
         if lost {
-            DEAF.store(DEAF.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+            RX_OVERRUNS.store(RX_OVERRUNS.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
         }
     }
 }
 
 /// Bytes that were lost on the way in.
-pub fn deaf() -> u32 {
-    DEAF.load(Ordering::Relaxed)
+pub fn rx_overruns() -> u32 {
+    RX_OVERRUNS.load(Ordering::Relaxed)
 }
 
 #[interrupt]
 fn USART1() {
     // SAFETY: the pointer is null or comes from the `&'static mut` that `hand_over` took and nobody else holds; an interrupt
     // does not preempt itself, so this is the only reference while it lives.
-    if let Some(ear) = unsafe { EAR.load(Ordering::Acquire).as_mut() } {
-        ear.listen();
+    if let Some(receiver) = unsafe { UART_RECEIVER.load(Ordering::Acquire).as_mut() } {
+        receiver.receive_byte();
     }
 }
 
@@ -61,7 +61,7 @@ pub struct Line {
     /// The sender.
     pub sender: Tx<USART1>,
     /// Bytes from the interrupt.
-    pub heard: Consumer<'static, u8, HEARD>,
+    pub received: Consumer<'static, u8, RX_QUEUE>,
 }
 
 impl Line {

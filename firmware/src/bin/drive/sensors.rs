@@ -4,7 +4,7 @@ use cortex_m::peripheral::DWT;
 use embedded_hal::delay::DelayNs;
 use palpate_drive::ads8681::{Ads8681, Range};
 use palpate_drive::as5047p::As5047p;
-use palpate_drive::{BoundedSpi, Counter, Input, Notes, PositionSensor};
+use palpate_drive::{BoundedSpi, EncoderCounter, Input, InputStatus, PositionSensor};
 use stm32f4xx_hal::gpio::{Output, Pin};
 use stm32f4xx_hal::pac::{SPI1, SPI3, TIM4};
 use stm32f4xx_hal::spi::Spi;
@@ -33,7 +33,7 @@ pub type Converter = Ads8681<BoundedSpi<Spi<SPI3>, Pin<'A', 15, Output>, Delay>,
 /// A timer that counts a quadrature encoder.
 pub struct Timer(pub TIM4);
 
-impl Counter for Timer {
+impl EncoderCounter for Timer {
     fn count(&mut self) -> u16 {
         self.0.cnt().read().cnt().bits()
     }
@@ -63,22 +63,22 @@ impl Sensors {
 
     /// One reading of all: four frames of SPI, and six more once in a hundred ticks while the converter fails.
     pub fn read(&mut self) -> Input {
-        let mut notes = Notes::empty();
+        let mut status = InputStatus::empty();
         // The force is held from here on, the angle some microseconds later.
         let begun = self.converter.begin().is_ok();
         let (angle, diagnostics) = match self.position {
             PositionSensor::Quadrature => (self.timer.count(), 0),
             PositionSensor::As5047p => self.encoder.read().unwrap_or_else(|_| {
-                notes |= Notes::NO_POSITION;
+                status |= InputStatus::NO_POSITION;
                 (0, 0)
             }),
         };
         let force = self.converter.read().ok().filter(|_| begun).unwrap_or_else(|| {
-            notes |= Notes::NO_FORCE;
+            status |= InputStatus::NO_FORCE;
             0
         });
         self.look_after_the_converter(force);
-        Input { angle, diagnostics, force, elapsed: self.elapsed(), notes }
+        Input { angle, diagnostics, force, elapsed: self.elapsed(), status }
     }
 
     fn look_after_the_converter(&mut self, force: u32) {

@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicBool, AtomicPtr, AtomicU32, Ordering};
 use cortex_m::peripheral::{SCB, SYST};
 use heapless::spsc::{Consumer, Producer};
 use palpate_drive::link::Source;
-use palpate_drive::{Choice, Cycle, Input, Notes, Order, Report};
+use palpate_drive::{Cycle, Input, InputStatus, Order, Report, ValidatedSettings};
 use stm32f4xx_hal::pac::PWR;
 
 use super::board::TICK_CYCLES;
@@ -20,7 +20,7 @@ pub const INPUTS: usize = 129;
 /// Jobs that wait for the interrupt.
 pub const JOBS: usize = 5;
 /// Settings that wait for the interrupt: one, 3.5 kB.
-pub const CHOICES: usize = 2;
+pub const SETTINGS: usize = 2;
 
 /// What the idle loop asks for.
 pub enum Job {
@@ -43,7 +43,7 @@ pub struct Tick {
     /// Jobs from the idle loop.
     pub jobs: Consumer<'static, Job, JOBS>,
     /// Other settings from the idle loop.
-    pub choices: Consumer<'static, Choice, CHOICES>,
+    pub settings: Consumer<'static, ValidatedSettings, SETTINGS>,
     /// Inputs from the link.
     pub inputs: Consumer<'static, Input, INPUTS>,
     /// Reports to the idle loop.
@@ -91,10 +91,10 @@ impl Tick {
 
     /// One job a tick, so that the work is bounded.
     fn job(&mut self) {
-        if let Some(choice) = self.choices.peek() {
-            self.cycle.choose(choice);
+        if let Some(settings) = self.settings.peek() {
+            self.cycle.apply(settings);
             // It was copied where it stands; the place is free from here on.
-            let _ = self.choices.dequeue();
+            let _ = self.settings.dequeue();
             return;
         }
         match self.jobs.dequeue() {
@@ -107,16 +107,16 @@ impl Tick {
         }
     }
 
-    /// What this tick sees. A fed input is taken as it is: its notes are the sender's, so that all faults can be fed.
+    /// What this tick sees. A fed input is taken as it is: its status are the sender's, so that all faults can be fed.
     fn input(&mut self) -> Option<Input> {
         let late = core::mem::take(&mut self.late);
         if self.source == Source::Link {
             return self.inputs.dequeue();
         }
         let mut input = self.sensors.read();
-        input.notes.set(Notes::OVERRUN, late);
-        input.notes.set(Notes::LINK_GONE, LINK_GONE.load(Ordering::Relaxed));
-        input.notes.set(Notes::BROWN_OUT, self.supply.csr().read().pvdo().bit_is_set());
+        input.status.set(InputStatus::OVERRUN, late);
+        input.status.set(InputStatus::LINK_GONE, LINK_GONE.load(Ordering::Relaxed));
+        input.status.set(InputStatus::BROWN_OUT, self.supply.csr().read().pvdo().bit_is_set());
         Some(input)
     }
 }

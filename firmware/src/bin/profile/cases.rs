@@ -6,8 +6,8 @@ use core::mem::size_of;
 use palpate::{
     AdaptiveWindow, AdaptiveWindowConfig, BlockConfig, BlockLeastMeanFourth, BlockLeastMeanSquare, BlockLeastSquares,
     ChangeConfig, ConfigError, ContactModel, CusumRls, CusumRlsConfig, Direction, DirectionalRls, DirectionalRlsConfig,
-    Ewrls, Gradient, Identifier, Law, ModelStream, Observation, ParameterRls, ParameterRlsConfig, Prior, Recent,
-    ResetRls, Sample, Sprls, Stream, Tracker, direct,
+    EstimatorState, Ewrls, Gradient, Identifier, ModelStream, Observation, ParameterRls, ParameterRlsConfig, Prior,
+    Recent, ResetRls, Sample, Sprls, Stream, UpdateLaw, direct,
 };
 
 use palpate_firmware::measurement::{Gauge, Work};
@@ -21,13 +21,13 @@ fn unsound(_: ConfigError) -> Fault {
 }
 
 /// One update of a law.
-struct Update<'a, L: Law> {
+struct Update<'a, L: UpdateLaw> {
     law: &'a L,
     state: &'a mut L::State,
     recent: Recent<'a>,
 }
 
-impl<L: Law> Work for Update<'_, L> {
+impl<L: UpdateLaw> Work for Update<'_, L> {
     fn work(&mut self) {
         // Where the call leaves it: a copy would be counted as well.
         let step = self.law.update(self.state, self.recent);
@@ -37,12 +37,12 @@ impl<L: Law> Work for Update<'_, L> {
 
 /// One update without what tells of its quality.
 struct Learn<F> {
-    learn: F,
+    update_estimate: F,
 }
 
 impl<F: FnMut()> Work for Learn<F> {
     fn work(&mut self) {
-        (self.learn)();
+        (self.update_estimate)();
     }
 }
 
@@ -101,15 +101,15 @@ struct Laws<'a> {
 
 impl Laws<'_> {
     /// Every update of one law.
-    fn law<L: Law>(&mut self, name: &str, window: u16, law: Result<L, ConfigError>) -> Result<(), Fault> {
+    fn law<L: UpdateLaw>(&mut self, name: &str, window: u16, law: Result<L, ConfigError>) -> Result<(), Fault> {
         let law = law.map_err(unsound)?;
         self.walk(name, window, &law, |gauge, state, recent| {
             gauge.pass(&mut Update { law: black_box(&law), state, recent })
         })
     }
 
-    /// One pass for each sample of the recording that is in contact, as a `Tracker` would call `law`.
-    fn walk<L: Law>(
+    /// One pass for each sample of the recording that is in contact, as a `EstimatorState` would call `law`.
+    fn walk<L: UpdateLaw>(
         &mut self,
         name: &str,
         window: u16,
@@ -119,11 +119,11 @@ impl Laws<'_> {
         let ring = usize::from(window) * size_of::<Observation>();
         self.gauge.case(name, window, size_of::<L::State>(), ring)?;
         let mut stream = Stream::<RING>::new(self.recording.config.stream).map_err(unsound)?;
-        let mut state = law.start();
+        let mut state = law.initial_state();
         for &sample in self.recording.samples {
             let event = stream.update(sample).map_err(|_| "a sample was rejected")?;
             if event.lost {
-                state = law.start();
+                state = law.initial_state();
             }
             if event.reading.contact && !event.reading.restarted {
                 pass(self.gauge, &mut state, stream.recent())?;
@@ -137,29 +137,29 @@ impl Laws<'_> {
         let config = &self.recording.config;
         let ewrls = Ewrls::new(config.ewrls).map_err(unsound)?;
         self.observe("ewrls_alone", &ewrls, |state, o| {
-            ewrls.learn(state, o);
+            ewrls.update_estimate(state, o);
         })?;
         let sprls = Sprls::new(config.sprls).map_err(unsound)?;
         self.observe("sprls_alone", &sprls, |state, o| {
-            sprls.learn(state, o);
+            sprls.update_estimate(state, o);
         })?;
         let cusum = CusumRls::new(CusumRlsConfig::default()).map_err(unsound)?;
         self.observe("cusum_rls_alone", &cusum, |state, o| {
-            cusum.learn(state, o);
+            cusum.update_estimate(state, o);
         })?;
         let block = BlockConfig::of(300);
         let bls = BlockLeastSquares::new(block).map_err(unsound)?;
-        self.learn("bls_alone", 300, &bls, |state, recent| {
-            bls.learn(state, recent);
+        self.update_estimate("bls_alone", 300, &bls, |state, recent| {
+            bls.update_estimate(state, recent);
         })?;
         let blmf = BlockLeastMeanFourth::new(block, Direction::SteepestDescent).map_err(unsound)?;
-        self.learn("blmf_alone", 300, &blmf, |state, recent| {
-            blmf.learn(state, recent);
+        self.update_estimate("blmf_alone", 300, &blmf, |state, recent| {
+            blmf.update_estimate(state, recent);
         })
     }
 
     /// A recursive law, with the newest observation at hand.
-    fn observe<L: Law>(
+    fn observe<L: UpdateLaw>(
         &mut self,
         name: &str,
         law: &L,
@@ -167,24 +167,24 @@ impl Laws<'_> {
     ) -> Result<(), Fault> {
         self.walk(name, 0, law, |gauge, state, recent| {
             let o = recent.newest().ok_or("a ring without an observation")?;
-            gauge.pass(&mut Learn { learn: || observe(black_box(state), &o) })
+            gauge.pass(&mut Learn { update_estimate: || observe(black_box(state), &o) })
         })
     }
 
-    fn learn<L: Law>(
+    fn update_estimate<L: UpdateLaw>(
         &mut self,
         name: &str,
         window: u16,
         law: &L,
-        mut learn: impl FnMut(&mut L::State, Recent<'_>),
+        mut update_estimate: impl FnMut(&mut L::State, Recent<'_>),
     ) -> Result<(), Fault> {
         self.walk(name, window, law, |gauge, state, recent| {
-            gauge.pass(&mut Learn { learn: || learn(black_box(state), recent) })
+            gauge.pass(&mut Learn { update_estimate: || update_estimate(black_box(state), recent) })
         })
     }
 }
 
-/// The whole way: filter, gate, law, interval.
+/// The whole way: filter, contact detection, law, interval.
 fn samples_to_estimates(recording: &Recording, gauge: &mut Gauge) -> Result<(), Fault> {
     let config = &recording.config;
     let stream = config.stream;
@@ -209,18 +209,18 @@ fn samples_to_estimates(recording: &Recording, gauge: &mut Gauge) -> Result<(), 
     })?;
     let mut four = (
         Stream::<RING>::new(stream).map_err(unsound)?,
-        Tracker::new(Ewrls::new(config.ewrls).map_err(unsound)?),
-        Tracker::new(Sprls::new(config.sprls).map_err(unsound)?),
-        Tracker::new(BlockLeastSquares::new(block).map_err(unsound)?),
-        Tracker::new(fourth()?),
+        EstimatorState::new(Ewrls::new(config.ewrls).map_err(unsound)?),
+        EstimatorState::new(Sprls::new(config.sprls).map_err(unsound)?),
+        EstimatorState::new(BlockLeastSquares::new(block).map_err(unsound)?),
+        EstimatorState::new(fourth()?),
     );
     whole(recording, gauge, "identify_all_four", 300, size_of_val(&four), |sample| {
         let (stream, ewrls, sprls, bls, blmf) = &mut four;
         if let Ok(event) = stream.update(sample) {
-            black_box(ewrls.follow(stream, &event));
-            black_box(sprls.follow(stream, &event));
-            black_box(bls.follow(stream, &event));
-            black_box(blmf.follow(stream, &event));
+            black_box(ewrls.update(stream, &event));
+            black_box(sprls.update(stream, &event));
+            black_box(bls.update(stream, &event));
+            black_box(blmf.update(stream, &event));
         }
     })
 }
@@ -242,7 +242,7 @@ fn three_parameters(recording: &Recording, gauge: &mut Gauge) -> Result<(), Faul
             correlated_samples: stream.correlated_samples(),
         };
         let law = ParameterRls::new(config).map_err(unsound)?;
-        let mut state = law.start();
+        let mut state = law.initial_state();
         let bytes = size_of::<ModelStream>() + size_of_val(&state);
         whole(recording, gauge, name, 0, bytes, |sample| {
             if let Ok(row) = stream.update(sample)

@@ -6,9 +6,9 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::entry;
 use defmt_rtt as _;
 use heapless::spsc::{Consumer, Producer, Queue};
-use palpate::{Bench, BenchConfig, Methods, Sample};
+use palpate::{EstimatorBank, EstimatorBankConfig, Methods, Sample};
 use palpate_drive::replay_format::{
-    CONFIG_BYTES, INPUT_FILE, OUTPUT_FILE, Outcome, RECORD_BYTES, SAMPLE_BYTES, decode_config, decode_sample,
+    CONFIG_BYTES, INPUT_FILE, OUTPUT_FILE, RECORD_BYTES, SAMPLE_BYTES, UpdateResult, decode_config, decode_sample,
     encode_counters, encode_record, record_bytes,
 };
 use semihosting::fs::File;
@@ -29,14 +29,14 @@ type Fault = &'static str;
 #[entry]
 fn main() -> ! {
     static mut INPUT: Queue<Sample, QUEUE> = Queue::new();
-    static mut OUTPUT: Queue<Outcome, OUTCOMES> = Queue::new();
+    static mut OUTPUT: Queue<UpdateResult, OUTCOMES> = Queue::new();
     // Not an `Option`: its `None` is no zero, and 25 kB of it would stand in the flash.
     static mut TICK: MaybeUninit<Tick> = MaybeUninit::uninit();
 
     let (to_tick, input) = INPUT.split();
     let (output, from_tick) = OUTPUT.split();
     let result = prepare().and_then(|(file, config)| {
-        let bench = Bench::new(&config).map_err(|_| "the settings are out of range")?;
+        let bench = EstimatorBank::new(&config).map_err(|_| "the settings are out of range")?;
         TICK.write(Tick { bench, input, output }).hand_over();
         start_timer()?;
         let samples = Source { file, to_tick, ended: false };
@@ -52,7 +52,7 @@ fn main() -> ! {
     }
 }
 
-fn prepare() -> Result<(File, BenchConfig), Fault> {
+fn prepare() -> Result<(File, EstimatorBankConfig), Fault> {
     let mut file = File::open(INPUT_FILE).map_err(|_| "cannot open replay.in in the folder it was run in")?;
     let mut length = [0; 4];
     file.read_exact(&mut length).map_err(|_| "replay.in is shorter than its header")?;
@@ -138,7 +138,7 @@ fn read_up_to(file: &mut File, bytes: &mut [u8]) -> io::Result<usize> {
 
 struct Sink {
     file: File,
-    from_tick: Consumer<'static, Outcome, OUTCOMES>,
+    from_tick: Consumer<'static, UpdateResult, OUTCOMES>,
     methods: Methods,
     written: u32,
 }

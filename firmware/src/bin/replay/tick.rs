@@ -6,8 +6,8 @@ use core::sync::atomic::{AtomicPtr, AtomicU32, Ordering};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
 use heapless::spsc::{Consumer, Producer};
-use palpate::{Bench, Sample};
-use palpate_drive::replay_format::{Counters, Outcome};
+use palpate::{EstimatorBank, Sample};
+use palpate_drive::replay_format::{ReplayCounters, UpdateResult};
 
 /// Samples that wait for the interrupt. One place of a queue stays empty, so this holds two blocks of the idle loop.
 pub const QUEUE: usize = 129;
@@ -17,11 +17,11 @@ pub const OUTCOMES: usize = 65;
 /// What the interrupt owns.
 pub struct Tick {
     /// The estimators.
-    pub bench: Bench,
+    pub bench: EstimatorBank,
     /// Samples from the idle loop.
     pub input: Consumer<'static, Sample, QUEUE>,
     /// Outcomes to the idle loop.
-    pub output: Producer<'static, Outcome, OUTCOMES>,
+    pub output: Producer<'static, UpdateResult, OUTCOMES>,
 }
 
 static TICK: AtomicPtr<Tick> = AtomicPtr::new(ptr::null_mut());
@@ -57,8 +57,8 @@ fn count(counter: &AtomicU32) {
 }
 
 /// The counters so far.
-pub fn counters() -> Counters {
-    Counters {
+pub fn counters() -> ReplayCounters {
+    ReplayCounters {
         samples: SAMPLES.load(Ordering::Relaxed),
         ticks: TICKS.load(Ordering::Relaxed),
         overruns: OVERRUNS.load(Ordering::Relaxed),

@@ -7,7 +7,7 @@ use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use palpate_cases::python;
-use palpate_lab::device::project;
+use palpate_lab::qemu_bench::project;
 use palpate_lab::recordings_folder;
 use palpate_lab::tools::{self, Leave, Missing, TARGET};
 

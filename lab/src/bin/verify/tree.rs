@@ -122,6 +122,6 @@ mod tests {
 
     #[test]
     fn the_tree_of_this_project_is_clean() {
-        check(&palpate_lab::device::project().expect("sources")).unwrap_or_else(|error| panic!("{error:#}"));
+        check(&palpate_lab::qemu_bench::project().expect("sources")).unwrap_or_else(|error| panic!("{error:#}"));
     }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::known_physics::{RECORDING_SETS, RecordingSet, Split};
 use super::stroke_split;
-use crate::device::project;
+use crate::qemu_bench::project;
 use crate::recording::Recording;
 use crate::rig::Rig;
 

@@ -7,24 +7,24 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
-use palpate::{BenchConfig, Sample};
+use palpate::{EstimatorBankConfig, Sample};
 use palpate_drive::replay_format::{
-    CONFIG_BYTES, COUNTER_BYTES, Counters, Outcome, decode_counters, decode_record, encode_config, encode_sample,
-    record_bytes,
+    CONFIG_BYTES, COUNTER_BYTES, ReplayCounters, UpdateResult, decode_counters, decode_record, encode_config,
+    encode_sample, record_bytes,
 };
 
 use crate::tools::{self, Leave};
 
 /// An image that takes no record for this long is given up.
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// The image and the emulator that runs it.
-pub struct Device {
+pub struct QemuBench {
     qemu: PathBuf,
     image: PathBuf,
 }
 
-impl Device {
+impl QemuBench {
     /// Finds the tools, or sets them up where `leave` is given, and builds the image.
     ///
     /// # Errors
@@ -40,11 +40,11 @@ impl Device {
     /// The image or the emulator fails, or returns something else than one record a sample.
     pub fn run(
         &self,
-        config: &BenchConfig,
+        config: &EstimatorBankConfig,
         samples: &[Sample],
         progress: impl Fn(u64),
-        mut take: impl FnMut(Outcome),
-    ) -> Result<Counters> {
+        mut take: impl FnMut(UpdateResult),
+    ) -> Result<ReplayCounters> {
         let folder = tempfile::tempdir().context("cannot make a folder for the image's files")?;
         write_input(&folder.path().join("replay.in"), config, samples).context("cannot write the image's input")?;
         let output = folder.path().join("replay.out");
@@ -99,15 +99,15 @@ fn wait(child: &mut Child, output: &Path, grown: impl Fn(u64)) -> Result<()> {
             (size, since) = (now, Instant::now());
             grown(size);
         }
-        if since.elapsed() > PATIENCE {
-            bail!("the image wrote nothing for {} s", PATIENCE.as_secs());
+        if since.elapsed() > TIMEOUT {
+            bail!("the image wrote nothing for {} s", TIMEOUT.as_secs());
         }
         std::thread::sleep(Duration::from_millis(5));
     }
     Ok(())
 }
 
-fn write_input(path: &Path, config: &BenchConfig, samples: &[Sample]) -> Result<()> {
+fn write_input(path: &Path, config: &EstimatorBankConfig, samples: &[Sample]) -> Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
     let mut buffer = [0; CONFIG_BYTES + 4];
     file.write_all(encode_config(config, &mut buffer).context("the settings do not fit their buffer")?)?;

@@ -7,16 +7,16 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
 
-use crate::device;
 use crate::listen::{Client, open};
+use crate::qemu_bench;
 use crate::tools::{self, Leave};
 
 /// How long the emulator may take to open its socket.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// How the emulated core sleeps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pace {
+pub enum ClockMode {
     /// By the wall clock, as a board does. A host that wakes late is then an interrupt that comes late.
     Wall,
     /// Not at all: every tick comes exactly when it is due, as fast as the host can go.
@@ -24,7 +24,7 @@ pub enum Pace {
 }
 
 /// A running drive. It ends with this value.
-pub struct Emulated {
+pub struct QemuDrive {
     child: Child,
     folder: tempfile::TempDir,
 }
@@ -42,7 +42,7 @@ impl DriveImage {
     /// # Errors
     /// A tool is missing (as [`tools::MissingTools`]), or the build fails.
     pub fn prepare(leave: Leave) -> Result<Self> {
-        Ok(Self { qemu: tools::for_the_device(leave)?, path: device::build("palpate-firmware", "--bin", "drive")? })
+        Ok(Self { qemu: tools::for_the_device(leave)?, path: qemu_bench::build("palpate-firmware", "--bin", "drive")? })
     }
 
     /// Starts the drive, with `calibration` in its flash where there is one, and `arguments` more for QEMU.
@@ -51,13 +51,13 @@ impl DriveImage {
     ///
     /// # Errors
     /// QEMU does not start.
-    pub fn start(&self, pace: Pace, calibration: Option<&[u8]>, arguments: &[&str]) -> Result<Emulated> {
+    pub fn start(&self, pace: ClockMode, calibration: Option<&[u8]>, arguments: &[&str]) -> Result<QemuDrive> {
         let folder = tempfile::tempdir().context("cannot make a folder for the drive's socket")?;
         let socket = folder.path().join("line");
         let mut command = Command::new(&self.qemu);
         let clock = match pace {
-            Pace::Wall => "shift=3",
-            Pace::Exact => "shift=3,sleep=off",
+            ClockMode::Wall => "shift=3",
+            ClockMode::Exact => "shift=3,sleep=off",
         };
         command
             .args(["-machine", "netduinoplus2", "-display", "none", "-monitor", "stdio", "-icount", clock])
@@ -78,21 +78,21 @@ impl DriveImage {
             .stderr(Stdio::inherit())
             .spawn()
             .with_context(|| format!("cannot run {}", self.qemu.display()))?;
-        let mut drive = Emulated { child, folder };
+        let mut drive = QemuDrive { child, folder };
         drive.wait()?;
         Ok(drive)
     }
 }
 
-impl Emulated {
+impl QemuDrive {
     fn wait(&mut self) -> Result<()> {
         let since = Instant::now();
         while !self.socket().exists() {
             if let Some(status) = self.child.try_wait().context("the emulator cannot be waited for")? {
                 bail!("the emulator ended with {status}");
             }
-            if since.elapsed() > PATIENCE {
-                bail!("the emulator opened no socket for {} s", PATIENCE.as_secs());
+            if since.elapsed() > TIMEOUT {
+                bail!("the emulator opened no socket for {} s", TIMEOUT.as_secs());
             }
             std::thread::sleep(Duration::from_millis(10));
         }
@@ -120,7 +120,7 @@ impl Emulated {
                     client.wake()?;
                     return Ok(client);
                 }
-                Err(error) if since.elapsed() > PATIENCE => return Err(error.into()),
+                Err(error) if since.elapsed() > TIMEOUT => return Err(error.into()),
                 Err(_) => std::thread::sleep(Duration::from_millis(10)),
             }
         }
@@ -135,7 +135,7 @@ impl Emulated {
         monitor.write_all(b"quit\n").and_then(|()| monitor.flush()).context("the emulator's monitor is gone")?;
         let since = Instant::now();
         while self.runs()? {
-            if since.elapsed() > PATIENCE {
+            if since.elapsed() > TIMEOUT {
                 bail!("the emulator does not end");
             }
             std::thread::sleep(Duration::from_millis(10));
@@ -152,7 +152,7 @@ impl Emulated {
     }
 }
 
-impl Drop for Emulated {
+impl Drop for QemuDrive {
     fn drop(&mut self) {
         // Killing fails only where it has ended by itself.
         let _ = self.child.kill();
