@@ -26,8 +26,8 @@ pub struct EffectsArgs {
 }
 
 /// Columns of text on a terminal: its own width within these, and 80 where the output is redirected.
-const NARROWEST: usize = 60;
-const WIDEST: usize = 110;
+const MIN_COLUMNS: usize = 60;
+const MAX_COLUMNS: usize = 110;
 
 /// Runs `palpate effects`.
 ///
@@ -36,7 +36,7 @@ const WIDEST: usize = 110;
 pub fn run(args: &EffectsArgs) -> anyhow::Result<()> {
     let chosen = chosen(&args.names)?;
     match &args.json {
-        None => print(&text::page(&chosen, textwrap::termwidth().clamp(NARROWEST, WIDEST))),
+        None => print(&text::page(&chosen, textwrap::termwidth().clamp(MIN_COLUMNS, MAX_COLUMNS))),
         Some(path) if path.as_os_str() == "-" => print(&machine::document(&chosen)?),
         Some(path) => {
             let mut file = OutFile::create(path)?;
@@ -54,7 +54,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static dyn Effect>, UsageError> {
 }
 
 fn unknown(name: &str) -> UsageError {
-    let all = effects::ALL.map(|effect| effect.card().name);
+    let all = effects::ALL.map(|effect| effect.spec().name);
     let expected = match nearest(name, &all) {
         Some(near) => format!("{near} perhaps; `palpate effects` lists them all"),
         None => format!("one of {}", all.join(", ")),

@@ -27,22 +27,22 @@ pub use signals::prepare::sensed;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
-use bootstrap::problem::Study;
-use bootstrap::sampler::Studio;
-use report::build_report::{self, Parts};
-use report::diagnosis::{Answer, Pictures};
+use bootstrap::problem::IdentificationProblem;
+use bootstrap::sampler::BootstrapSampler;
+use report::build_report::{self, DiagnosisInputs};
+use report::diagnosis::{Diagnosis, PlotData};
 use report::refined_rig;
 use selection::{confidence_interval, forward_selection, verdict};
-use signals::bandwidth::lenses;
-use signals::prepare::{afforded, common_period};
-use signals::uniform_trial::Raw;
+use signals::bandwidth::analysis_filters;
+use signals::prepare::{common_period, decimate_to_need};
+use signals::uniform_trial::UniformTrial;
 
 /// What `diagnose` found.
 pub struct Found {
     /// As JSON.
-    pub answer: Answer,
+    pub answer: Diagnosis,
     /// For the page.
-    pub pictures: Pictures,
+    pub pictures: PlotData,
     /// The improved rig.
     pub improved: Rig,
 }
@@ -63,34 +63,34 @@ pub fn diagnose(
     say: &dyn Fn(&str),
 ) -> Result<Found> {
     say("reading the sensors");
-    let raws = sensed(rig, origin, trials)?;
-    let findings = check::check(rig, trials, &raws);
-    let study = study(rig, origin, raws, seed)?;
-    let mut search = forward_selection::search(&study, say);
-    let judgement = verdict::judge(&study, &mut search, say).context("nothing was searched")?;
+    let uniform_trials = sensed(rig, origin, trials)?;
+    let findings = check::check(rig, trials, &uniform_trials);
+    let problem = problem(rig, origin, uniform_trials, seed)?;
+    let mut search = forward_selection::search(&problem, say);
+    let assessment = verdict::assess(&problem, &mut search, say).context("nothing was searched")?;
     say("the report");
     let handed = (!simulation.is_empty()).then(|| {
         let period = common_period(trials);
-        let parts = (study.studio.lens.period / period).round() as usize;
-        let simulated = |run: &Recording| Raw::of(run, Figures::of(rig, run), period).thinned(parts);
-        let simulated: Vec<Raw> = simulation.iter().map(simulated).collect();
-        build_report::handed_rests(&study, &simulated)
+        let parts = (problem.sampler.contact_filter.period / period).round() as usize;
+        let simulated = |run: &Recording| UniformTrial::of(run, Figures::of(rig, run), period).thinned(parts);
+        let simulated: Vec<UniformTrial> = simulation.iter().map(simulated).collect();
+        build_report::residuals_of_simulation(&problem, &simulated)
     });
-    let stand = &search.rounds.last().context("nothing was searched")?.stand;
-    let estimates = confidence_interval::estimates(&study, stand, &judgement);
-    let improved = refined_rig::rig_of(rig, &study, stand, &judgement, &estimates);
-    let (study, search, judgement, estimates) = (&study, &search, &judgement, &estimates);
-    let parts = Parts { rig, study, search, judgement, estimates, handed, findings };
-    let (answer, pictures) = build_report::compose(parts).context("no channel was left to look at")?;
+    let fitted_model = &search.rounds.last().context("nothing was searched")?.fitted_model;
+    let estimates = confidence_interval::estimates(&problem, fitted_model, &assessment);
+    let improved = refined_rig::refined_rig(rig, &problem, fitted_model, &assessment, &estimates);
+    let (problem, search, assessment, estimates) = (&problem, &search, &assessment, &estimates);
+    let parts = DiagnosisInputs { rig, problem, search, assessment, estimates, handed, findings };
+    let (answer, pictures) = build_report::build_report(parts).context("no channel was left to look at")?;
     Ok(Found { answer, pictures, improved })
 }
 
-/// The trials `raws` as they are looked at, and the nominal model that they are held against.
+/// The trials `uniform_trials` as they are looked at, and the nominal model that they are held against.
 ///
 /// # Errors
 /// Effects in the rig file that cannot be.
-pub fn study(rig: &Rig, origin: &str, raws: Vec<Raw>, seed: u64) -> Result<Study> {
-    let raws = afforded(rig, raws);
-    let (contact, drive) = lenses(rig, &raws);
-    Ok(Study::new(rig, origin, Studio::new(raws, contact, drive, seed))?)
+pub fn problem(rig: &Rig, origin: &str, uniform_trials: Vec<UniformTrial>, seed: u64) -> Result<IdentificationProblem> {
+    let uniform_trials = decimate_to_need(rig, uniform_trials);
+    let (contact, drive) = analysis_filters(rig, &uniform_trials);
+    Ok(IdentificationProblem::new(rig, origin, BootstrapSampler::new(uniform_trials, contact, drive, seed))?)
 }

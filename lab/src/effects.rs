@@ -1,44 +1,44 @@
 //! The physics that a rig's nominal model can lack, one effect a file.
 //!
-//! An effect is a named term that is off at zero: it changes what the contact bears ([`Touch`]), what the drive has to
-//! overcome ([`Push`]), or what the force sensor makes of the force ([`Reading`]). It is written once and runs in two
+//! An effect is a named term that is off at zero: it changes what the contact bears ([`ContactState`]), what the drive has to
+//! overcome ([`DriveState`]), or what the force sensor makes of the force ([`Reading`]). It is written once and runs in two
 //! places: along a recorded motion, when `diagnose` asks what it would have changed, and in `palpate simulate`.
 //!
-//! To add one: write a file with a [`Card`] and an [`Effect`], and name it in [`ALL`]. Nothing else knows the list.
+//! To add one: write a file with a [`EffectSpec`] and an [`Effect`], and name it in [`ALL`]. Nothing else knows the list.
 
-mod card;
 mod contact;
-pub mod contact_law;
-mod course;
+pub mod contact_simulator;
+mod contact_state;
+mod cubic_segment;
 mod drive;
-mod push;
+mod drive_state;
+mod effect_spec;
+mod excitation_stats;
+mod load_side;
 mod reading;
 mod resolved;
-mod scene;
 mod sensor;
-mod side;
-mod touch;
 
-pub use card::{Card, Form, Limit, Parameter, Place, Stage, key_of, slug};
-pub use contact_law::{Active, Along};
-pub use course::Course;
-pub use push::Push;
+pub use contact_simulator::{ActiveEffect, ContactSimulator};
+pub use contact_state::{ContactState, gate, ramp, rounded};
+pub use cubic_segment::CubicSegment;
+pub use drive_state::DriveState;
+pub use effect_spec::{EffectSpec, Form, Limit, Parameter, Place, Stage, key_of, slug};
+pub use excitation_stats::{Abscissa, ExcitationStats, FrequencySearch, Start, ToneWeight, geometric, linear};
+pub use load_side::LoadSideSignals;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
-pub use scene::{Abscissa, Scene, Start, Tones, Weight, geometric, linear};
-pub use side::Side;
-pub use touch::{Touch, gate, ramp, rounded};
 
 /// What an effect with a hidden state carries from one sample to the next; all zero at the start of a trial.
-pub type Memory = [f64; 7];
+pub type EffectState = [f64; 7];
 
 /// Physics beyond the nominal model.
 pub trait Effect: Sync {
     /// What it is called and what is known of it.
-    fn card(&self) -> &'static Card;
+    fn spec(&self) -> &'static EffectSpec;
 
     /// Where a search for its parameters starts, for form `form`, in the measures of `scene`.
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start>;
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start>;
 
     /// Whether form `form` only rounds off another of this effect: it is tried where that one was taken up, and nowhere else. A corner
     /// that may be as round as it likes bends like any other law.
@@ -47,12 +47,12 @@ pub trait Effect: Sync {
     }
 
     /// For a form that repeats along time or way: where to look for its frequency. Its `starts` are then empty.
-    fn tones(&self, _form: usize, _scene: &Scene) -> Option<Tones> {
+    fn frequency_search(&self, _form: usize, _scene: &ExcitationStats) -> Option<FrequencySearch> {
         None
     }
 
     /// Acts on the contact. `values` are in the order of the form's parameters.
-    fn touch(&self, _form: usize, _values: &[f64], _memory: &mut Memory, _touch: &mut Touch) {}
+    fn act_on_contact(&self, _form: usize, _values: &[f64], _memory: &mut EffectState, _touch: &mut ContactState) {}
 
     /// The greatest effort that it lets pass, for effects of the drive that cut the command's peaks: along a recording they
     /// are cut row by row, before any filter.
@@ -61,16 +61,16 @@ pub trait Effect: Sync {
     }
 
     /// Acts on the drive.
-    fn push(&self, _form: usize, _values: &[f64], _memory: &mut Memory, _push: &mut Push) {}
+    fn act_on_drive(&self, _form: usize, _values: &[f64], _memory: &mut EffectState, _push: &mut DriveState) {}
 
     /// What a motor's own motion, ahead of the tool's, takes from the effort along a recording, row by row. Effects that say
     /// so do not `push` there.
-    fn ahead(&self, _form: usize, _values: &[f64], _side: &Side<'_>) -> Option<Vec<f64>> {
+    fn transmission_loss(&self, _form: usize, _values: &[f64], _side: &LoadSideSignals<'_>) -> Option<Vec<f64>> {
         None
     }
 
     /// Acts on the reading of the force sensor, over a whole trial.
-    fn read(&self, _form: usize, _values: &[f64], _reading: &mut Reading<'_>) {}
+    fn act_on_reading(&self, _form: usize, _values: &[f64], _reading: &mut Reading<'_>) {}
 }
 
 /// Every effect, in the order in which `palpate effects` lists them.
@@ -109,5 +109,5 @@ pub static ALL: [&dyn Effect; 29] = [
 /// The effect of that name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static dyn Effect> {
-    ALL.into_iter().find(|effect| effect.card().name == name)
+    ALL.into_iter().find(|effect| effect.spec().name == name)
 }

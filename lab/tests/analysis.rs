@@ -1,8 +1,8 @@
 //! The parts of the diagnosis, each against a truth from elsewhere: closed forms, other algorithms, chance itself.
 
-use palpate_lab::diagnose::bootstrap::null_distribution::Null;
-use palpate_lab::diagnose::signals::dequantize::unround;
-use palpate_lab::diagnose::signals::derivative_filter::Lens;
+use palpate_lab::diagnose::bootstrap::null_distribution::NullDistribution;
+use palpate_lab::diagnose::signals::dequantize::dequantize;
+use palpate_lab::diagnose::signals::derivative_filter::DerivativeFilter;
 use palpate_lab::effects::{Reading, gate, ramp};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -18,46 +18,46 @@ fn apart(a: &[f64], b: &[f64], edge: usize) -> f64 {
 #[test]
 fn a_lens_leaves_a_parabola_its_velocity_and_its_acceleration() {
     // x = 2 - 3 t + 5 t^2: level is x + 5 blur^2 (the mean of t^2 over the Gaussian), slope and bend are exact.
-    for (blur, stride) in [(0.66e-3, 1), (4e-3, 3), (20e-3, 7)] {
-        let lens = Lens::new(blur, 1e-3, stride);
+    for (filter_width, stride) in [(0.66e-3, 1), (4e-3, 3), (20e-3, 7)] {
+        let lens = DerivativeFilter::new(filter_width, 1e-3, stride);
         let time: Vec<f64> = (0..2000).map(|row| f64::from(row) * 1e-3).collect();
         let x: Vec<f64> = time.iter().map(|t| 2.0 - 3.0 * t + 5.0 * t * t).collect();
-        let seen: Vec<f64> = time.iter().copied().step_by(stride).collect();
-        let edge = lens.reach() / stride + 2;
-        let slope: Vec<f64> = seen.iter().map(|t| -3.0 + 10.0 * t).collect();
-        assert!(apart(&lens.slope(&x), &slope, edge) < 1e-8, "blur {blur}");
-        assert!(apart(&lens.bend(&x), &vec![10.0; seen.len()], edge) < 1e-5, "blur {blur}");
+        let valid: Vec<f64> = time.iter().copied().step_by(stride).collect();
+        let edge = lens.half_width_rows() / stride + 2;
+        let slope: Vec<f64> = valid.iter().map(|t| -3.0 + 10.0 * t).collect();
+        assert!(apart(&lens.first_derivative(&x), &slope, edge) < 1e-8, "blur {filter_width}");
+        assert!(apart(&lens.second_derivative(&x), &vec![10.0; valid.len()], edge) < 1e-5, "blur {filter_width}");
         // What is held from its row to the next runs half a row late.
         let held: Vec<f64> = time.iter().map(|t| 7.0 * t).collect();
-        let late: Vec<f64> = seen.iter().map(|t| 7.0 * (t - 0.5e-3)).collect();
-        assert!(apart(&lens.held(&held), &late, edge) < 1e-9, "blur {blur}");
+        let late: Vec<f64> = valid.iter().map(|t| 7.0 * (t - 0.5e-3)).collect();
+        assert!(apart(&lens.smooth_held(&held), &late, edge) < 1e-9, "blur {filter_width}");
     }
 }
 
 #[test]
 fn a_lens_leaves_a_polynomial_its_third_to_fifth_derivative() {
-    for (blur, stride) in [(2e-3, 1), (4e-3, 3), (20e-3, 7)] {
-        let lens = Lens::new(blur, 1e-3, stride);
+    for (filter_width, stride) in [(2e-3, 1), (4e-3, 3), (20e-3, 7)] {
+        let lens = DerivativeFilter::new(filter_width, 1e-3, stride);
         let time: Vec<f64> = (0..1000).map(|row| f64::from(row - 500) * 1e-3).collect();
         let x: Vec<f64> = time.iter().map(|t| 0.3 - t + 5.0 * t * t + 2.0 * t.powi(3) - 7.0 * t.powi(4)).collect();
-        let seen: Vec<f64> = time.iter().copied().step_by(stride).collect();
-        let edge = lens.reach() / stride + 2;
-        let jerk: Vec<f64> = seen.iter().map(|t| 12.0 - 168.0 * t).collect();
+        let valid: Vec<f64> = time.iter().copied().step_by(stride).collect();
+        let edge = lens.half_width_rows() / stride + 2;
+        let jerk: Vec<f64> = valid.iter().map(|t| 12.0 - 168.0 * t).collect();
         // Some hundred taps of size blur^-n carry the rounding of x, which is of size one.
-        let rounding = |power: i32| 1e-13 * blur.powi(-power);
-        assert!(apart(&lens.jerk(&x), &jerk, edge) < rounding(3), "blur {blur}");
-        assert!(apart(&lens.snap(&x), &vec![-168.0; seen.len()], edge) < rounding(4), "blur {blur}");
+        let rounding = |power: i32| 1e-13 * filter_width.powi(-power);
+        assert!(apart(&lens.jerk(&x), &jerk, edge) < rounding(3), "blur {filter_width}");
+        assert!(apart(&lens.snap(&x), &vec![-168.0; valid.len()], edge) < rounding(4), "blur {filter_width}");
         let quintic: Vec<f64> = x.iter().zip(&time).map(|(x, t)| x + 4.0 * t.powi(5)).collect();
-        assert!(apart(&lens.crackle(&quintic), &vec![480.0; seen.len()], edge) < rounding(5), "blur {blur}");
+        assert!(apart(&lens.crackle(&quintic), &vec![480.0; valid.len()], edge) < rounding(5), "blur {filter_width}");
     }
 }
 
 #[test]
 fn a_lens_passes_a_sine_as_its_corner_says() {
-    let lens = Lens::new(0.132_5 / 40.0, 1e-3, 1);
+    let lens = DerivativeFilter::new(0.132_5 / 40.0, 1e-3, 1);
     let wave: Vec<f64> = (0..4000).map(|row| (std::f64::consts::TAU * 40.0 * f64::from(row) * 1e-3).sin()).collect();
-    let seen = lens.level(&wave);
-    let size = seen[500..3500].iter().map(|x| x * x).sum::<f64>() * 2.0 / 3000.0;
+    let valid = lens.smooth(&wave);
+    let size = valid[500..3500].iter().map(|x| x * x).sum::<f64>() * 2.0 / 3000.0;
     // -3 dB is half the power; the constant 0.1325 is given to four digits.
     assert!((size - 0.5).abs() < 2e-3, "{size}");
 }
@@ -75,15 +75,15 @@ fn tip(x: &[f64], play: f64) -> Vec<f64> {
 #[test]
 fn play_behind_the_first_of_two_passes_is_play_and_behind_one_it_is_not() {
     let x: Vec<f64> = (0..4000).map(|row| (std::f64::consts::TAU * 4.0 * f64::from(row) * 1e-3).sin()).collect();
-    let lens = Lens::in_two(13e-3, 1e-3, 2, 4);
+    let lens = DerivativeFilter::cascaded(13e-3, 1e-3, 2, 4);
     let passes = lens.passes().unwrap();
-    let edge = lens.reach() / lens.stride + 4;
-    let truth = lens.level(&tip(&x, 0.1));
+    let edge = lens.half_width_rows() / lens.stride + 4;
+    let truth = lens.smooth(&tip(&x, 0.1));
     let one: Vec<f64> = {
         let every = lens.every_row();
-        tip(&every.level(&x), 0.1).into_iter().step_by(lens.stride).collect()
+        tip(&every.smooth(&x), 0.1).into_iter().step_by(lens.stride).collect()
     };
-    let two = passes.second.level(&tip(&passes.first.level(&x), 0.1));
+    let two = passes.second.smooth(&tip(&passes.first.smooth(&x), 0.1));
     let (one, two) = (apart(&truth, &one, edge), apart(&truth, &two, edge));
     // A corner is missed by the square of the blur: of a quarter of it, by a sixteenth; the tip's rest at a turn by less.
     assert!(one > 0.01 && two < one / 8.0, "{one} {two}");
@@ -92,12 +92,12 @@ fn play_behind_the_first_of_two_passes_is_play_and_behind_one_it_is_not() {
 #[test]
 fn two_passes_are_one_gaussian_to_a_linear_law() {
     let x: Vec<f64> = (0..4000).map(|row| (std::f64::consts::TAU * 9.0 * f64::from(row) * 1e-3).sin()).collect();
-    let lens = Lens::in_two(13e-3, 1e-3, 2, 3);
+    let lens = DerivativeFilter::cascaded(13e-3, 1e-3, 2, 3);
     let passes = lens.passes().unwrap();
-    let edge = lens.reach() / lens.stride + 4;
+    let edge = lens.half_width_rows() / lens.stride + 4;
     // The rows between are 2 ms apart, a third of the second pass: its sum is the integral to exp(-2 (3 pi)^2 / 9) and less;
     // the ends of both supports leave 3e-4 of their peaks.
-    let apart = apart(&lens.slope(&x), &passes.second.level(&passes.first.slope(&x)), edge);
+    let apart = apart(&lens.first_derivative(&x), &passes.second.smooth(&passes.first.first_derivative(&x)), edge);
     assert!(apart < 1e-3 * std::f64::consts::TAU * 9.0, "{apart}");
 }
 
@@ -107,7 +107,7 @@ fn a_slow_motion_on_a_coarse_encoder_is_known_far_better_than_its_steps() {
     let truth: Vec<f64> = (0..4000).map(|row| 2.3e-3 * (0.7 * f64::from(row) * 1e-3).sin()).collect();
     let mut read: Vec<f64> = truth.iter().map(|x| (x / step).round() * step).collect();
     let rounded = apart(&read, &truth, 100);
-    unround(|row| row as f64, &mut read, step);
+    dequantize(|row| row as f64, &mut read, step);
     let told = apart(&read, &truth, 100);
     // The instants of the steps are known to half a row, 1 um at this speed; at the turn to less than half a step.
     assert!(rounded > 0.45 * step && told < 0.25 * step, "{rounded} {told}");
@@ -119,7 +119,7 @@ fn a_slow_motion_on_a_coarse_encoder_is_known_far_better_than_its_steps() {
 fn a_reading_that_steps_at_every_row_stays_as_it_is() {
     let mut read: Vec<f64> = (0..100).map(|row| f64::from(row * 2)).collect();
     let before = read.clone();
-    unround(|row| row as f64, &mut read, 1.0);
+    dequantize(|row| row as f64, &mut read, 1.0);
     assert_eq!(read, before);
 }
 
@@ -143,15 +143,31 @@ fn a_delay_shifts_a_wave_and_a_lag_filters_it() {
     let (step, pulse) = (5e-3, std::f64::consts::TAU * 12.0);
     let wave = |t: f64| (pulse * t).sin();
     let rows: Vec<f64> = (0..800).map(|row| wave(f64::from(row) * step)).collect();
-    let still = vec![0.0; rows.len()];
+    let at_rest = vec![0.0; rows.len()];
     for lag in [0.2e-3, 2.5e-3, 7.1e-3] {
         let mut force = rows.clone();
-        Reading { start: 0.0, step, blur: 0.0, added_blur: 0.0, acceleration: &still, force: &mut force }.delay(lag);
+        Reading {
+            start: 0.0,
+            step,
+            filter_width: 0.0,
+            added_filter_width: 0.0,
+            acceleration: &at_rest,
+            force: &mut force,
+        }
+        .delay(lag);
         let late: Vec<f64> = (0..800).map(|row| wave(f64::from(row) * step - lag)).collect();
         // Six points of a wave at 0.06 of the rate: the next term of the series is below 1e-3.
         assert!(apart(&force, &late, 10) < 1e-3, "{lag}");
         let mut force = rows.clone();
-        Reading { start: 0.0, step, blur: 0.0, added_blur: 0.0, acceleration: &still, force: &mut force }.low_pass(lag);
+        Reading {
+            start: 0.0,
+            step,
+            filter_width: 0.0,
+            added_filter_width: 0.0,
+            acceleration: &at_rest,
+            force: &mut force,
+        }
+        .low_pass(lag);
         let (size, angle) = ((1.0 + (pulse * lag).powi(2)).sqrt().recip(), (pulse * lag).atan());
         let slow: Vec<f64> = (0..800).map(|row| size * (pulse * f64::from(row) * step - angle).sin()).collect();
         // Straight lines between rows lose (pulse step)^2 / 12 of the wave.
@@ -173,11 +189,11 @@ fn a_probability_of_chance_is_what_chance_does() {
     let mut alarms = 0;
     for _ in 0..200 {
         let twins: Vec<f64> = (0..40).map(|_| greatest()).collect();
-        let null = Null::of(&twins, 2.0);
+        let null = NullDistribution::of(&twins, 2.0);
         alarms += (0..50).filter(|_| null.p_value(greatest()) < 0.01).count();
     }
     // One per cent of 10 000 is 100. The law leans to the safe side, for the greatest of a dozen squares falls faster than
     // its tail; it must not lean to the other, nor so far that nothing is ever found.
     assert!((20..=120).contains(&alarms), "{alarms}");
-    assert!(Null::of(&[1.0, 1.0, 1.0], 2.0).p_value(f64::NAN).is_nan());
+    assert!(NullDistribution::of(&[1.0, 1.0, 1.0], 2.0).p_value(f64::NAN).is_nan());
 }

@@ -1,13 +1,13 @@
 //! The experiment that would tell two explanations apart.
 
-use palpate_lab::diagnose::bootstrap::problem::Study;
-use palpate_lab::diagnose::bootstrap::sampler::Studio;
-use palpate_lab::diagnose::estimation::whitener::{Floor, Whitener, tracks};
-use palpate_lab::diagnose::experiment::{DECIDES, Worth, design, separated_by};
+use palpate_lab::diagnose::bootstrap::problem::IdentificationProblem;
+use palpate_lab::diagnose::bootstrap::sampler::BootstrapSampler;
+use palpate_lab::diagnose::estimation::whitener::{NoiseModel, Whitener, filtered_trials};
+use palpate_lab::diagnose::experiment::{DECISIVE_CHI2, InformationRate, design, separated_by};
 use palpate_lab::diagnose::model::{Model, Term};
 use palpate_lab::diagnose::report::diagnosis::Experiment;
-use palpate_lab::diagnose::signals::derivative_filter::Lens;
-use palpate_lab::diagnose::signals::uniform_trial::Raw;
+use palpate_lab::diagnose::signals::derivative_filter::DerivativeFilter;
+use palpate_lab::diagnose::signals::uniform_trial::UniformTrial;
 use palpate_lab::effects::find;
 use palpate_lab::rig::Rig;
 use palpate_lab::sensors::Figures;
@@ -23,7 +23,7 @@ struct Size {
 const BENCH: Size = Size { length: 1.0, force: 1.0 };
 
 /// Recordings of a tool that taps a soft pad to 8 mm with a sine of `frequency` on top, every length and force scaled.
-fn recorded(size: Size, frequency: f64) -> (Study, Whitener) {
+fn recorded(size: Size, frequency: f64) -> (IdentificationProblem, Whitener) {
     look(&pad(size, frequency))
 }
 
@@ -47,7 +47,7 @@ fn pad(size: Size, frequency: f64) -> String {
 }
 
 /// Recordings of a drive and what it touches.
-fn driven(contact: &str) -> (Study, Whitener) {
+fn driven(contact: &str) -> (IdentificationProblem, Whitener) {
     look(&format!(
         "[rig]\nname = \"bench\"\ncoordinate = \"linear\"\n[drive]\nmass_kg = 0.8\nviscous_n_s_m = 4.0\n{contact}\
          [sensors]\nposition_resolution_m = 5e-6\n\
@@ -58,26 +58,27 @@ fn driven(contact: &str) -> (Study, Whitener) {
 
 const PAD: &str = "[contact]\nmodel = \"kelvin_voigt\"\nsurface_m = 0.0\nstiffness_n_m = 300\ndamping_n_s_m = 5\n";
 
-fn look(text: &str) -> (Study, Whitener) {
+fn look(text: &str) -> (IdentificationProblem, Whitener) {
     look_at(text, "", 1)
 }
 
 /// `count` recordings of a rig that has `effects` which its file does not know.
-fn look_at(text: &str, effects: &str, count: u64) -> (Study, Whitener) {
+fn look_at(text: &str, effects: &str, count: u64) -> (IdentificationProblem, Whitener) {
     let rig = Rig::parse(text, "rig.toml").unwrap();
     let real = Rig::parse(&format!("{text}{effects}"), "rig.toml").unwrap();
-    let raws: Vec<Raw> = (1..=count)
+    let raws: Vec<UniformTrial> = (1..=count)
         .map(|seed| {
             let recording = simulate(&real, seed, "rig.toml").unwrap().recording;
-            Raw::of(&recording, Figures::of(&rig, &recording), recording.period())
+            UniformTrial::of(&recording, Figures::of(&rig, &recording), recording.period())
         })
         .collect();
-    let (lens, drive_lens) = (Lens::for_contact(&rig, &raws), Lens::for_drive(&rig, &raws));
+    let (lens, drive_filter) = (DerivativeFilter::for_contact(&rig, &raws), DerivativeFilter::for_drive(&rig, &raws));
     let force = raws[0].figures.force.map(|force| force.noise * lens.noise()[0]);
     // A drive that is shaken by its own encoder's steps: 20 mN.
-    let effort = rig.drive.map(|_| 0.02 * drive_lens.noise()[0]);
-    let study = Study::new(&rig, "rig", Studio::new(raws, lens, drive_lens, 1)).unwrap();
-    let even = |effort: bool, floor: f64| Floor::even(&tracks(&study.studio.trials, effort), floor.max(1e-12));
+    let effort = rig.drive.map(|_| 0.02 * drive_filter.noise()[0]);
+    let study = IdentificationProblem::new(&rig, "rig", BootstrapSampler::new(raws, lens, drive_filter, 1)).unwrap();
+    let even =
+        |effort: bool, floor: f64| NoiseModel::even(&filtered_trials(&study.sampler.trials, effort), floor.max(1e-12));
     let whitener = Whitener { force: force.map(|f| even(false, f)), effort: effort.map(|f| even(true, f)) };
     (study, whitener)
 }
@@ -87,20 +88,24 @@ fn term(name: &str) -> Term {
 }
 
 /// The rig's own values with one effect of the given parameters.
-fn model(study: &Study, name: &str, parameters: &[f64]) -> (Model, Vec<f64>) {
+fn model(study: &IdentificationProblem, name: &str, parameters: &[f64]) -> (Model, Vec<f64>) {
     let term = term(name);
     assert_eq!(term.parameters().len(), parameters.len(), "{name}: {:?}", term.parameters());
     (study.nominal.with(term), study.given.iter().chain(parameters).copied().collect())
 }
 
-fn experiment(bench: &(Study, Whitener), answer: &(Model, Vec<f64>), rival: &(Model, Vec<f64>)) -> (Experiment, Worth) {
+fn experiment(
+    bench: &(IdentificationProblem, Whitener),
+    answer: &(Model, Vec<f64>),
+    rival: &(Model, Vec<f64>),
+) -> (Experiment, InformationRate) {
     let found = design(&bench.0, &bench.1, (&answer.0, &answer.1), &[(&rival.0, &rival.1)]).unwrap();
     println!("{}\n{:?}\n", found.0.text, found.1);
     found
 }
 
 /// Relaxation over 0.3 s against a delay, in recordings that show a single frequency.
-fn relaxation_or_delay(size: Size) -> (Experiment, Worth) {
+fn relaxation_or_delay(size: Size) -> (Experiment, InformationRate) {
     let bench = recorded(size, 8.0);
     let answer = model(&bench.0, "stress_relaxation", &[60.0 * size.force / size.length, 0.3]);
     let rival = model(&bench.0, "channel_delay", &[1e-3]);
@@ -116,7 +121,7 @@ fn relaxation_and_delay_are_told_apart_by_holds_or_by_two_frequencies() {
         experiment.text
     );
     assert!(worth.designed > 1.3 * worth.recorded, "{worth:?}");
-    assert!(worth.designed * experiment.time.last().unwrap() > DECIDES);
+    assert!(worth.designed * experiment.time.last().unwrap() > DECISIVE_CHI2);
     for word in ["stress_relaxation", "channel_delay", "rms", "N", "s in all"] {
         assert!(experiment.text.contains(word), "{word}: {}", experiment.text);
     }
@@ -137,13 +142,13 @@ fn damping_that_grows_with_depth_is_told_from_drag_at_two_depths_or_two_speeds()
 fn the_experiment_asks_nothing_of_the_rig_that_the_recordings_did_not() {
     let (experiment, _) = relaxation_or_delay(BENCH);
     let (study, _) = recorded(BENCH, 8.0);
-    let recorded = &study.studio.raws[0].position;
+    let recorded = &study.sampler.uniform_trials[0].position;
     let (low, high) = range(recorded);
     let (least, greatest) = range(&experiment.reference);
     // The analysis sees the recording smoothed, which takes a little off its peaks and adds nothing.
     assert!(least >= low - 1e-5 && greatest <= high + 1e-5, "{least} to {greatest} within {low} to {high}");
     assert!(greatest > 0.8 * high, "the depth that was reached is used: {greatest} of {high}");
-    let period = study.studio.lens.period;
+    let period = study.sampler.contact_filter.period;
     // The smooth reference without its sensor: its rates by differences.
     let (speed, acceleration) = rates(&experiment.reference, period);
     let true_speed = 0.013 / 0.06 * (-1.0f64).exp() + 2e-3 * 8.0 * std::f64::consts::TAU;
@@ -216,7 +221,7 @@ fn two_explanations_that_are_one_are_not_separated_by_any_motion() {
     let answer = model(&bench.0, "force_gain", &[0.2]);
     let rival = model(&bench.0, "nonlinear_stiffness", &[1.0, 8e-3]);
     let (experiment, worth) = experiment(&bench, &answer, &rival);
-    assert!(worth.designed * experiment.time.last().unwrap() < DECIDES, "{worth:?}");
+    assert!(worth.designed * experiment.time.last().unwrap() < DECISIVE_CHI2, "{worth:?}");
     assert!(experiment.text.contains("No motion") && experiment.text.contains("drive's effort"), "{}", experiment.text);
 }
 
@@ -228,7 +233,7 @@ fn what_two_real_recordings_leave_open_is_closed_by_the_experiment() {
         .replace("free_depth_m = -0.005", "free_depth_m = 0.0079");
     let relaxes = "[[effect]]\nname = \"stress_relaxation\"\nbranch_stiffness_n_m = 30\nrelaxation_time_s = 0.05\n";
     let bench = look_at(&swung, relaxes, 2);
-    assert_eq!((bench.0.nominal.contact, bench.0.nominal.shifts.len()), (Some(true), 1));
+    assert_eq!((bench.0.nominal.contact, bench.0.nominal.surface_shifts.len()), (Some(true), 1));
     let fitted = |name: &str, parameters: &[f64]| {
         let (model, start) = model(&bench.0, name, parameters);
         let fit = bench.0.fit(&model, &start, &bench.1);
@@ -290,12 +295,12 @@ fn against_two_rivals_the_closer_one_counts_and_both_are_spoken_of() {
 #[test]
 fn every_effect_has_an_experiment_against_its_neighbour_within_what_the_rig_bore() {
     let bench = driven(PAD);
-    let (low, high) = range(&bench.0.studio.raws[0].position);
-    let scene = bench.0.scene(&bench.0.nominal, &bench.0.given);
+    let (low, high) = range(&bench.0.sampler.uniform_trials[0].position);
+    let scene = bench.0.excitation_stats(&bench.0.nominal, &bench.0.given);
     let models: Vec<_> = palpate_lab::effects::ALL
         .into_iter()
         .filter(|effect| !effect.starts(0, &scene).is_empty())
-        .map(|effect| model(&bench.0, effect.card().name, &start(&bench.0, effect.card().name)))
+        .map(|effect| model(&bench.0, effect.spec().name, &start(&bench.0, effect.spec().name)))
         .collect();
     for pair in models.chunks_exact(2) {
         println!("{:?} against {:?}", pair[0].0.terms, pair[1].0.terms);
@@ -320,8 +325,8 @@ fn without_a_rival_there_is_nothing_to_design() {
 }
 
 /// Where the search for an effect begins.
-fn start(study: &Study, name: &str) -> Vec<f64> {
-    let scene = study.scene(&study.nominal, &study.given);
+fn start(study: &IdentificationProblem, name: &str) -> Vec<f64> {
+    let scene = study.excitation_stats(&study.nominal, &study.given);
     find(name).unwrap().starts(0, &scene)[0].values.clone()
 }
 

@@ -1,8 +1,8 @@
 //! The search for the best values: where it begins is not where it ends.
 
-use palpate_lab::diagnose::estimation::levenberg_marquardt::{self, Data};
+use palpate_lab::diagnose::estimation::levenberg_marquardt::{self, FitData};
 use palpate_lab::diagnose::model::index;
-use palpate_lab::diagnose::{sensed, study};
+use palpate_lab::diagnose::{problem, sensed};
 use palpate_lab::rig::Rig;
 use palpate_lab::simulate::simulate;
 
@@ -21,11 +21,12 @@ fn a_search_that_begins_with_a_clock_at_its_bound_moves() {
     // Two samples late, of which the clock may take a quarter of one.
     let late = format!("{BENCH}[[effect]]\nname = \"channel_delay\"\ndelay_s = 0.005\n");
     let recording = simulate(&Rig::parse(&late, "rig.toml").unwrap(), 1, "rig.toml").unwrap().recording;
-    let study = study(&rig, "rig.toml", sensed(&rig, "rig.toml", &[recording]).unwrap(), 1).unwrap();
-    let whitener = study.even_floors();
-    let data = Data { trials: &study.studio.trials, whitener: &whitener, rows: None };
-    let search =
-        |start: &[f64]| levenberg_marquardt::fit(&data, &study.nominal, start, &study.scene(&study.nominal, start));
+    let study = problem(&rig, "rig.toml", sensed(&rig, "rig.toml", &[recording]).unwrap(), 1).unwrap();
+    let whitener = study.uniform_noise_models();
+    let data = FitData { trials: &study.sampler.trials, whitener: &whitener, rows: None };
+    let search = |start: &[f64]| {
+        levenberg_marquardt::fit(&data, &study.nominal, start, &study.excitation_stats(&study.nominal, start))
+    };
     let best = search(&study.given);
     assert!((best.values[index::FORCE_TIMING].abs() * 400.0 - 0.25).abs() < 1e-9, "{best:?}");
     // Beside the best in K by so little that there is less to earn than the nine that the clock costs at its bound.

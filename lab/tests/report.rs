@@ -12,20 +12,20 @@ mod safe;
 mod signal;
 
 use answers::{explained, nano, no_mismatch, parameters, unknown, value};
-use palpate_lab::diagnose::report::diagnosis::{Answer, Phase, Pictures, Verdict};
+use palpate_lab::diagnose::report::diagnosis::{Diagnosis, Phase, PlotData, Verdict};
 use palpate_lab::diagnose::report::html;
 use reading::{bytes, doubles, floats, prose};
 use signal::{Size, trace};
 
-type Diagnosis = (Answer, Pictures);
+type Report = (Diagnosis, PlotData);
 
-fn written((answer, pictures): &Diagnosis) -> String {
+fn written((answer, pictures): &Report) -> String {
     let mut out = Vec::new();
     html::write(answer, pictures, &mut out).expect("a vector takes everything");
     String::from_utf8(out).expect("a page is UTF-8")
 }
 
-fn every_kind() -> [(&'static str, Diagnosis); 5] {
+fn every_kind() -> [(&'static str, Report); 5] {
     [
         ("explained", explained()),
         ("no-mismatch", no_mismatch()),
@@ -36,7 +36,7 @@ fn every_kind() -> [(&'static str, Diagnosis); 5] {
 }
 
 #[track_caller]
-fn says(diagnosis: &Diagnosis, sentences: &[&str]) {
+fn says(diagnosis: &Report, sentences: &[&str]) {
     let prose = prose(&written(diagnosis));
     for sentence in sentences {
         assert!(prose.contains(sentence), "{sentence:?} is not in {prose:?}");
@@ -170,14 +170,14 @@ fn the_numbers_of_a_short_trial_come_back_to_the_bit() {
     let html = written(&diagnosis);
     let trace = &diagnosis.1.traces[3];
     assert_eq!(doubles(&html, "t3-time"), trace.time);
-    assert_eq!(bytes(&html, "t3-seen"), trace.seen.iter().map(|&seen| u8::from(seen)).collect::<Vec<_>>());
+    assert_eq!(bytes(&html, "t3-seen"), trace.valid.iter().map(|&seen| u8::from(seen)).collect::<Vec<_>>());
     for (name, values) in [
         ("depth", &trace.depth),
         ("measured", &trace.measured),
         ("given", &trace.as_given),
         ("refitted", &trace.refitted),
         ("improved", &trace.improved),
-        ("floor", &trace.floor),
+        ("floor", &trace.expected_noise),
     ] {
         assert_eq!(&floats(&html, &format!("t3-{name}")), values, "{name}");
     }
@@ -220,7 +220,7 @@ fn nothing_but_a_verdict_is_still_a_page() {
     let (answer, mut pictures) = no_mismatch();
     pictures.traces.clear();
     pictures.maps.clear();
-    let answer = Answer { verdict: Verdict::NoMismatch, nominal: Vec::new(), checked: Vec::new(), ..answer };
+    let answer = Diagnosis { verdict: Verdict::NoMismatch, nominal: Vec::new(), checked: Vec::new(), ..answer };
     says(
         &(answer, pictures),
         &[

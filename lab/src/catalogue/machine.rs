@@ -57,15 +57,15 @@ pub fn document(effects: &[&'static dyn Effect]) -> serde_json::Result<String> {
 }
 
 fn entry(effect: &'static dyn Effect) -> Entry {
-    let card = effect.card();
+    let spec = effect.spec();
     Entry {
-        name: card.name,
-        acts_in: card.place.name(),
-        statement: card.statement,
-        forms: card.forms.iter().map(law).collect(),
-        excited_by: card.excited_by,
-        resembles: card.resembles,
-        source: card.source,
+        name: spec.name,
+        acts_in: spec.place.name(),
+        statement: spec.statement,
+        forms: spec.forms.iter().map(law).collect(),
+        excited_by: spec.excited_by,
+        resembles: spec.resembles,
+        source: spec.source,
     }
 }
 

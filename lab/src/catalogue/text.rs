@@ -37,13 +37,13 @@ impl Page {
     }
 
     fn effect(&mut self, effect: &'static dyn Effect) {
-        let card = effect.card();
-        self.put(0, 2, &format!("{} (acts in the {})", card.name, card.place.name()));
-        self.put(2, 0, &format!("{}.", card.statement));
-        card.forms.iter().for_each(|form| self.form(form));
-        self.put(2, 4, &format!("shows in: {}", card.excited_by));
-        self.put(2, 4, &format!("resembles: {}", card.resembles.join(", ")));
-        self.put(2, 4, &format!("source: {}", card.source));
+        let spec = effect.spec();
+        self.put(0, 2, &format!("{} (acts in the {})", spec.name, spec.place.name()));
+        self.put(2, 0, &format!("{}.", spec.statement));
+        spec.forms.iter().for_each(|form| self.form(form));
+        self.put(2, 4, &format!("shows in: {}", spec.excited_by));
+        self.put(2, 4, &format!("resembles: {}", spec.resembles.join(", ")));
+        self.put(2, 4, &format!("source: {}", spec.source));
         self.text.push('\n');
     }
 

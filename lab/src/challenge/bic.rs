@@ -12,13 +12,13 @@ use palpate_cases::baselines::BaselineResult;
 use rayon::prelude::*;
 
 use super::case_files::{self, CaseFiles};
-use crate::diagnose::bootstrap::problem::Study;
-use crate::diagnose::estimation::levenberg_marquardt::{self, Data};
-use crate::diagnose::estimation::projection::Remainder;
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
+use crate::diagnose::estimation::levenberg_marquardt::{self, FitData};
+use crate::diagnose::estimation::projection::ProjectedResidual;
 use crate::diagnose::estimation::whitener::Whitener;
 use crate::diagnose::model::Model;
 use crate::diagnose::selection::cross_validation;
-use crate::diagnose::{sensed, study};
+use crate::diagnose::{problem, sensed};
 
 /// Candidates of a round that are fitted in full.
 const FITTED: usize = 8;
@@ -33,34 +33,34 @@ const MOST_EFFECTS: usize = 4;
 pub fn answer(folder: &Path) -> Result<BaselineResult> {
     let start = Instant::now();
     let CaseFiles { rig, origin, trials } = case_files::read(folder)?;
-    let study = study(&rig, &origin, sensed(&rig, &origin, &trials)?, 1)?;
-    let whitener = study.even_floors();
-    let first = study.first_fit();
+    let study = problem(&rig, &origin, sensed(&rig, &origin, &trials)?, 1)?;
+    let whitener = study.uniform_noise_models();
+    let first = study.initial_fit();
     let (model, values) = select(&study, &whitener, first.clone());
     let named = model.terms[study.nominal.terms.len()..].iter().map(|term| term.name().to_owned()).collect();
     // In the channel in which refitted values leave the more over the sensors' noise, as the diagnosis has it.
     let held = |model: &Model, values: &[f64]| {
-        cross_validation::held_out(&study, &whitener, model, values, &study.scene(model, values))
+        cross_validation::cross_validate(&study, &whitener, model, values, &study.excitation_stats(model, values))
     };
     let (before, after) = (held(&study.nominal, &first), held(&model, &values));
     let effort = before.powers[1] > before.powers[0];
     Ok(BaselineResult {
         named,
-        refitted: cross_validation::rms(&study, &before.rests, effort),
-        held_out: cross_validation::rms(&study, &after.rests, effort),
+        refitted: cross_validation::rms(&study, &before.residuals, effort),
+        held_out: cross_validation::rms(&study, &after.residuals, effort),
         unit: rig.coordinate.force_unit().to_owned(),
         seconds: start.elapsed().as_secs_f64(),
     })
 }
 
 /// Adds effects one by one while the criterion falls.
-fn select(study: &Study, whitener: &Whitener, first: Vec<f64>) -> (Model, Vec<f64>) {
-    let data = Data { trials: &study.studio.trials, whitener, rows: None };
+fn select(study: &IdentificationProblem, whitener: &Whitener, first: Vec<f64>) -> (Model, Vec<f64>) {
+    let data = FitData { trials: &study.sampler.trials, whitener, rows: None };
     let (mut model, mut values) = (study.nominal.clone(), first);
     let mut best = criterion(&data, &model, &values);
     for _ in 0..MOST_EFFECTS {
-        let scene = study.scene(&model, &values);
-        let remainder = Remainder::of(data, &model, &values, &scene);
+        let scene = study.excitation_stats(&model, &values);
+        let remainder = ProjectedResidual::of(data, &model, &values, &scene);
         let mut scores = remainder.scores(&scene, &|_| true);
         scores.retain(|score| model.terms.iter().all(|term| term.name() != score.term.name()));
         scores.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -80,9 +80,9 @@ fn select(study: &Study, whitener: &Whitener, first: Vec<f64>) -> (Model, Vec<f6
     (model, values)
 }
 
-fn criterion(data: &Data<'_>, model: &Model, values: &[f64]) -> f64 {
+fn criterion(data: &FitData<'_>, model: &Model, values: &[f64]) -> f64 {
     let rows = data.whitener.origins().len().max(1) as f64;
     let terms = model.terms.iter().flat_map(|term| term.parameters());
-    let free = model.nominals() + terms.filter(|parameter| !parameter.fixed).count();
+    let free = model.nominal_count() + terms.filter(|parameter| !parameter.fixed).count();
     rows * (data.energy(model, values) / rows).max(f64::MIN_POSITIVE).ln() + free as f64 * rows.ln()
 }

@@ -5,47 +5,47 @@
 //! or of what the rig file leads one to expect.
 
 mod channel;
+mod checked_trial;
 mod clock;
+mod contact;
 mod drive;
+mod excitation;
 mod finding;
-mod motion;
-mod note;
-mod step;
-mod still;
-mod touch;
-mod unit;
-mod view;
-mod words;
+mod position_steps;
+mod ranked_finding;
+mod stuck_channel;
+mod units;
+mod wording;
 
-use crate::diagnose::signals::uniform_trial::Raw;
+use crate::diagnose::signals::uniform_trial::UniformTrial;
 use crate::recording::Recording;
 use crate::rig::Rig;
+use checked_trial::CheckedTrial;
 pub use finding::Finding;
-use note::gather;
-use view::View;
+use ranked_finding::merge_findings;
 
 /// Looks at `recordings`, and at `raws` made of them in the same order, as measurements of `rig`.
 ///
 /// There is at most one finding of a kind and channel: the worst trial is named and the others are counted. The grave ones
 /// come first.
 #[must_use]
-pub fn check(rig: &Rig, recordings: &[Recording], raws: &[Raw]) -> Vec<Finding> {
-    let views: Vec<View<'_>> =
-        recordings.iter().zip(raws).map(|(recording, raw)| View::new(rig, recording, raw)).collect();
+pub fn check(rig: &Rig, recordings: &[Recording], raws: &[UniformTrial]) -> Vec<Finding> {
+    let views: Vec<CheckedTrial<'_>> =
+        recordings.iter().zip(raws).map(|(recording, raw)| CheckedTrial::new(rig, recording, raw)).collect();
     let mut notes = Vec::new();
     for view in &views {
-        notes.extend(still::dead(view));
-        notes.extend(touch::wrong_sign(rig, view));
+        notes.extend(stuck_channel::dead(view));
+        notes.extend(contact::wrong_sign(rig, view));
         notes.extend(drive::wrong_sign(rig, view));
-        notes.extend(unit::suspicion(rig, view));
-        notes.extend(still::stuck(view));
+        notes.extend(units::suspicion(rig, view));
+        notes.extend(stuck_channel::stuck(view));
         notes.extend(clock::faults(view));
-        notes.extend(step::jumps(view));
-        notes.extend(step::coarse(rig, view));
+        notes.extend(position_steps::jumps(view));
+        notes.extend(position_steps::coarse(rig, view));
     }
-    notes.extend(touch::reached(rig, &views));
+    notes.extend(contact::reached(rig, &views));
     notes.extend(clock::together(rig, &views));
-    notes.extend(motion::lacking(rig, &views));
+    notes.extend(excitation::lacking(rig, &views));
     notes.extend(channel::missing(rig, &views));
-    gather(notes, recordings)
+    merge_findings(notes, recordings)
 }

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::diagnose;
 use crate::diagnose::experiment::Experiment;
-use crate::diagnose::report::diagnosis::Answer;
+use crate::diagnose::report::diagnosis::Diagnosis;
 use crate::diagnose::report::html;
 use crate::error::{InputError, UsageError};
 use crate::outfile::OutFile;
@@ -134,7 +134,7 @@ fn progress() -> ProgressBar {
 }
 
 /// To standard error: standard output is for the JSON.
-fn print(answer: &Answer) {
+fn print(answer: &Diagnosis) {
     eprintln!("{}", answer.summary);
     for physics in &answer.physics {
         eprintln!("  {}: {}", physics.name, physics.statement);
@@ -143,7 +143,7 @@ fn print(answer: &Answer) {
             eprintln!("    {} = {:.4e} {} (95 %: {low:.4e} to {high:.4e})", value.name, value.value, value.unit);
         }
     }
-    for rival in &answer.rivals {
+    for rival in &answer.alternatives {
         eprintln!("  not told apart: {}. {}", rival.physics.join(" and "), rival.separated_by);
     }
     for finding in &answer.findings {

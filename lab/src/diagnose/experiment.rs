@@ -3,30 +3,30 @@
 //! What a motion is worth is what the best-fitting rival leaves of it, were the answer the truth: T-optimality over pairs,
 //! of which the worst counts. The motions stay within what the recordings did, so that the rig has borne it all before.
 
-mod bench;
-mod claim;
-mod course;
-mod library;
-mod pair;
-mod pairs;
-mod rest;
-mod room;
-mod words;
+mod description;
+mod discrepancy;
+mod hypothesis;
+mod hypothesis_pairs;
+mod motion_limits;
+mod separating_experiment;
+mod synthetic_rig;
+mod test_motions;
+mod trajectory;
 
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::estimation::whitener::Whitener;
 use crate::diagnose::model::Model;
-use bench::Bench;
-use claim::Claim;
-use course::Course;
-use library::Motion;
-pub use pair::separated_by;
-use pairs::Pairs;
-use rest::Rest;
-use room::Room;
+use discrepancy::Discrepancy;
+use hypothesis::Hypothesis;
+use hypothesis_pairs::HypothesisPairs;
+use motion_limits::MotionLimits;
+pub use separating_experiment::separated_by;
+use synthetic_rig::SyntheticRig;
+use test_motions::TestMotion;
+use trajectory::Trajectory;
 
 /// A trajectory to run.
 #[derive(Debug, Clone, Serialize)]
@@ -40,21 +40,21 @@ pub struct Experiment {
 }
 
 /// Energy from which two models count as told apart: chance leaves less but once in two thousand times.
-pub const DECIDES: f64 = 12.0;
+pub const DECISIVE_CHI2: f64 = 12.0;
 
 /// Parts of the greatest speed at which a motion is tried, until force and effort stay within what they were.
-const EASE: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
+const SPEED_FRACTIONS: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
 
 /// A motion that was tried.
-struct Trying {
-    motion: Motion,
+struct TriedMotion {
+    motion: TestMotion,
     /// What each rival leaves of it, were the answer true.
-    left: Vec<Rest>,
+    left: Vec<Discrepancy>,
     /// What the answer leaves of it, were each rival true.
-    reverse: Vec<Rest>,
+    reverse: Vec<Discrepancy>,
 }
 
-impl Trying {
+impl TriedMotion {
     /// Energy in the closest of the pairs.
     fn least(&self, wider: &[bool]) -> f64 {
         least(&self.left, &self.reverse, wider)
@@ -68,7 +68,7 @@ impl Trying {
 
 /// Energy in the closest of the pairs. Where a rival is `wider`, that is, can do all that the answer does, only its own
 /// truth could tell them apart.
-fn least(left: &[Rest], reverse: &[Rest], wider: &[bool]) -> f64 {
+fn least(left: &[Discrepancy], reverse: &[Discrepancy], wider: &[bool]) -> f64 {
     let both = left.iter().zip(reverse).zip(wider);
     let energy = both.map(|((left, reverse), wider)| if *wider { reverse.energy } else { left.energy });
     energy.fold(f64::INFINITY, f64::min)
@@ -76,7 +76,7 @@ fn least(left: &[Rest], reverse: &[Rest], wider: &[bool]) -> f64 {
 
 /// What a motion is worth, in energy a second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Worth {
+pub struct InformationRate {
     /// Of the recorded motions.
     pub recorded: f64,
     /// Of the experiment.
@@ -87,26 +87,32 @@ pub struct Worth {
 /// worth; `None` where there is no rival, or nothing moved.
 #[must_use]
 pub fn design(
-    study: &Study,
+    problem: &IdentificationProblem,
     whitener: &Whitener,
     answer: (&Model, &[f64]),
     rivals: &[(&Model, &[f64])],
-) -> Option<(Experiment, Worth)> {
-    let room = Room::of(study, answer.0, answer.1).filter(|_| !rivals.is_empty())?;
-    let claims: Vec<Claim> = rivals.iter().map(|rival| Claim::of(study, rival.0, rival.1)).collect();
-    let pairs = Pairs::new(study, whitener, Claim::of(study, answer.0, answer.1), claims);
-    let mut tried: Vec<Trying> = bearable(&pairs.answer, room).into_par_iter().map(|m| pairs.attempt(m)).collect();
-    let wider: Vec<bool> = (0..rivals.len()).map(|at| tried.iter().all(|t| t.left[at].energy < DECIDES)).collect();
+) -> Option<(Experiment, InformationRate)> {
+    let room = MotionLimits::of(problem, answer.0, answer.1).filter(|_| !rivals.is_empty())?;
+    let claims: Vec<Hypothesis> = rivals.iter().map(|rival| Hypothesis::of(problem, rival.0, rival.1)).collect();
+    let pairs = HypothesisPairs::new(problem, whitener, Hypothesis::of(problem, answer.0, answer.1), claims);
+    let mut tried: Vec<TriedMotion> = bearable(&pairs.answer, room).into_par_iter().map(|m| pairs.attempt(m)).collect();
+    let wider: Vec<bool> =
+        (0..rivals.len()).map(|at| tried.iter().all(|t| t.left[at].energy < DECISIVE_CHI2)).collect();
     tried.sort_by(|a, b| b.rate(&wider).total_cmp(&a.rate(&wider)));
     let best = best(&pairs, tried, &wider, room)?;
-    let worth = Worth { recorded: pairs.recorded(&wider), designed: best.rate(&wider) };
-    let text = words::text(study, &pairs.answer, &best, &wider, worth, answer.0, rivals);
-    let (time, reference) = sampled(study, &best.motion.course);
+    let worth = InformationRate { recorded: pairs.recorded(&wider), designed: best.rate(&wider) };
+    let text = description::text(problem, &pairs.answer, &best, &wider, worth, answer.0, rivals);
+    let (time, reference) = sampled(problem, &best.motion.course);
     Some((Experiment { text, time, reference }, worth))
 }
 
 /// The first of `tried`, or what it gains from company or from being repeated.
-fn best(pairs: &Pairs<'_>, tried: Vec<Trying>, wider: &[bool], room: Room) -> Option<Trying> {
+fn best(
+    pairs: &HypothesisPairs<'_>,
+    tried: Vec<TriedMotion>,
+    wider: &[bool],
+    room: MotionLimits,
+) -> Option<TriedMotion> {
     // Against several rivals, one motion may do what another leaves undone.
     let both = match tried.as_slice() {
         [first, second, ..] => Some(pairs.attempt(first.motion.then(&second.motion))),
@@ -114,17 +120,17 @@ fn best(pairs: &Pairs<'_>, tried: Vec<Trying>, wider: &[bool], room: Room) -> Op
     };
     let best = tried.into_iter().take(1).chain(both).max_by(|a, b| a.rate(wider).total_cmp(&b.rate(wider)))?;
     let once = best.least(wider);
-    let wanted = (2.0 * DECIDES / once.max(f64::MIN_POSITIVE)).ceil();
+    let wanted = (2.0 * DECISIVE_CHI2 / once.max(f64::MIN_POSITIVE)).ceil();
     let count = wanted.min((room.seconds / best.motion.course.seconds()).floor());
-    if count < 2.0 || once >= DECIDES || once * count < DECIDES {
+    if count < 2.0 || once >= DECISIVE_CHI2 || once * count < DECISIVE_CHI2 {
         return Some(best);
     }
     Some(pairs.attempt(best.motion.times(count as usize)))
 }
 
 /// Every motion as quick as the force and the effort of the recordings allow, or as slow as it gets.
-fn bearable(bench: &Bench<'_>, room: Room) -> Vec<Motion> {
-    let eased = EASE.map(|part| library::motions(room.eased(part)));
+fn bearable(bench: &SyntheticRig<'_>, room: MotionLimits) -> Vec<TestMotion> {
+    let eased = SPEED_FRACTIONS.map(|part| test_motions::motions(room.eased(part)));
     let last = eased.len() - 1;
     let pick = |at: usize| {
         let mut list = eased.iter().enumerate().filter_map(|(ease, list)| Some((ease, list.get(at)?)));
@@ -134,8 +140,8 @@ fn bearable(bench: &Bench<'_>, room: Room) -> Vec<Motion> {
 }
 
 /// The reference at the period of the recordings.
-fn sampled(study: &Study, course: &Course) -> (Vec<f64>, Vec<f64>) {
-    let period = study.studio.lens.period;
+fn sampled(problem: &IdentificationProblem, course: &Trajectory) -> (Vec<f64>, Vec<f64>) {
+    let period = problem.sampler.contact_filter.period;
     let reference: Vec<f64> = course.rows(period).iter().map(|row| row[0]).collect();
     ((0..reference.len()).map(|row| row as f64 * period).collect(), reference)
 }

@@ -1,16 +1,16 @@
 //! What the simulation says of a recorded motion: the nominal rig and the effects added to it.
 
-mod balance;
 pub mod contact_phase;
+mod drive_balance;
 pub mod excitation;
 pub mod residual;
 pub mod term;
 
-use crate::diagnose::signals::filtered_trial::{Track, Trial};
-use crate::effects::contact_law::{Active, Along};
+use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
+use crate::effects::contact_simulator::{ActiveEffect, ContactSimulator};
 use crate::effects::{Effect, Place, Reading};
 use crate::rig::Contact;
-pub use residual::{Channels, Rest};
+pub use residual::{Channels, Residual};
 pub use term::Term;
 
 /// Index of the nominal values in a parameter vector.
@@ -47,7 +47,7 @@ pub struct Model {
     /// What the force sensor shows at rest by the rig file.
     pub force_zero: f64,
     /// How far the surface may lie elsewhere in each trial after the first: an encoder starts anywhere within its step.
-    pub shifts: Vec<f64>,
+    pub surface_shifts: Vec<f64>,
     /// Effects.
     pub terms: Vec<Term>,
 }
@@ -63,14 +63,14 @@ impl Model {
 
     /// Length of the nominal values.
     #[must_use]
-    pub fn nominals(&self) -> usize {
-        index::SHARED + self.shifts.len()
+    pub fn nominal_count(&self) -> usize {
+        index::SHARED + self.surface_shifts.len()
     }
 
     /// Trials.
     #[must_use]
     pub fn trials(&self) -> usize {
-        1 + self.shifts.len()
+        1 + self.surface_shifts.len()
     }
 
     /// Surface of trial `trial`.
@@ -81,14 +81,14 @@ impl Model {
 
     /// Where the values of term `at` begin.
     #[must_use]
-    pub fn start_of(&self, at: usize) -> usize {
+    pub fn first_value_of(&self, at: usize) -> usize {
         let trials = self.trials();
-        self.nominals() + self.terms[..at].iter().map(|term| term.all_parameters(trials).len()).sum::<usize>()
+        self.nominal_count() + self.terms[..at].iter().map(|term| term.all_parameters(trials).len()).sum::<usize>()
     }
 
     /// The channels that an effect at `place` reaches.
     #[must_use]
-    pub fn reach(&self, place: Place) -> Channels {
+    pub fn affected_channels(&self, place: Place) -> Channels {
         match place {
             Place::Contact => Channels { force: self.contact.is_some(), effort: false },
             Place::Drive => Channels { force: false, effort: self.drive },
@@ -99,63 +99,64 @@ impl Model {
     /// Whether there is anything for an effect at `place` to act on.
     #[must_use]
     pub fn takes(&self, place: Place) -> bool {
-        let reach = self.reach(place);
+        let reach = self.affected_channels(place);
         reach.force || reach.effort
     }
 
     /// What the model with `values` leaves of `trial`.
     #[must_use]
-    pub fn rest(&self, values: &[f64], trial: &Trial, channels: Channels) -> Rest {
+    pub fn residual(&self, values: &[f64], trial: &AnalysisTrial, channels: Channels) -> Residual {
         let (force, effort) = (channels.force, channels.effort && self.drive);
         let number = trial.number;
-        let of = |wanted: bool, track: &Track, law: &dyn Fn(&Track) -> Vec<f64>| {
-            if wanted { track.left_by(law) } else { Vec::new() }
+        let of = |wanted: bool, filtered: &FilteredTrial, law: &dyn Fn(&FilteredTrial) -> Vec<f64>| {
+            if wanted { filtered.apply_law(law) } else { Vec::new() }
         };
-        let force = of(force, &trial.contact, &|track| self.force_rest(values, number, track));
-        let effort = of(effort, &trial.drive, &|track| self.effort_rest(values, number, track));
-        Rest { force, effort }
+        let force = of(force, &trial.contact, &|filtered| self.force_residual(values, number, filtered));
+        let effort = of(effort, &trial.drive, &|filtered| self.effort_residual(values, number, filtered));
+        Residual { force, effort }
     }
 
-    fn force_rest(&self, values: &[f64], trial: usize, track: &Track) -> Vec<f64> {
-        let (Some(bilateral), Some(measured), Some(rate)) = (self.contact, &track.force, &track.force_rate) else {
+    fn force_residual(&self, values: &[f64], trial: usize, filtered: &FilteredTrial) -> Vec<f64> {
+        let (Some(bilateral), Some(measured), Some(rate)) = (self.contact, &filtered.force, &filtered.force_rate)
+        else {
             return Vec::new();
         };
-        let reading = self.reading(values, trial, track, &self.contact_force(values, trial, track, bilateral));
+        let reading = self.reading(values, trial, filtered, &self.contact_force(values, trial, filtered, bilateral));
         // A fraction of a sample: its first order is all of it, and leaves the band as it is.
         let late = values[index::FORCE_TIMING];
         let measured = measured.iter().zip(rate).map(|(force, rate)| force + late * rate);
         measured.zip(&reading).map(|(measured, reading)| measured - reading).collect()
     }
 
-    fn effort_rest(&self, values: &[f64], trial: usize, track: &Track) -> Vec<f64> {
-        let Some(measured) = &track.force else { return self.balance(values, trial, track, |_| 0.0) };
+    fn effort_residual(&self, values: &[f64], trial: usize, filtered: &FilteredTrial) -> Vec<f64> {
+        let Some(measured) = &filtered.force else { return self.balance(values, trial, filtered, |_| 0.0) };
         // What the sensor makes of the force on the tool is taken off the reading to get at that force.
-        let bilateral = self.contact.filter(|_| self.senses());
+        let bilateral = self.contact.filter(|_| self.has_sensor_effect());
         let distortion = bilateral.map(|bilateral| {
-            let borne = self.contact_force(values, trial, track, bilateral);
-            let reading = self.reading(values, trial, track, &borne);
+            let borne = self.contact_force(values, trial, filtered, bilateral);
+            let reading = self.reading(values, trial, filtered, &borne);
             reading.iter().zip(&borne).map(|(reading, borne)| reading - borne).collect::<Vec<f64>>()
         });
         let taken = |at: usize| distortion.as_ref().map_or(self.force_zero, |taken| taken[at]);
-        self.balance(values, trial, track, |at| measured[at] - taken(at))
+        self.balance(values, trial, filtered, |at| measured[at] - taken(at))
     }
 
     /// Whether `effect` is among the terms already and cannot be there twice. Relaxation can: it has as many times as it likes.
     #[must_use]
     pub fn holds(&self, effect: &dyn Effect) -> bool {
-        let same = |term: &&Term| term.name() == effect.card().name;
-        self.terms.iter().filter(same).count() >= effect.card().most
+        let same = |term: &&Term| term.name() == effect.spec().name;
+        self.terms.iter().filter(same).count() >= effect.spec().max_instances
     }
 
     /// Whether an effect of the sensor is among the terms.
     #[must_use]
-    pub fn senses(&self) -> bool {
-        self.terms.iter().any(|term| term.effect.card().place == Place::Sensor)
+    pub fn has_sensor_effect(&self) -> bool {
+        self.terms.iter().any(|term| term.effect.spec().place == Place::Sensor)
     }
 
     /// Force between tool and environment along the motion.
     #[must_use]
-    pub fn contact_force(&self, values: &[f64], trial: usize, track: &Track, bilateral: bool) -> Vec<f64> {
+    pub fn contact_force(&self, values: &[f64], trial: usize, filtered: &FilteredTrial, bilateral: bool) -> Vec<f64> {
         let contact = Contact {
             surface: self.surface(values, trial),
             stiffness: values[index::STIFFNESS],
@@ -163,38 +164,53 @@ impl Model {
             bilateral,
         };
         let acting = self.at(Place::Contact, values, trial);
-        let actives: Vec<Active<'_>> = acting.iter().map(active).collect();
-        let mut along = Along::new(contact, &actives);
-        (0..track.len())
+        let actives: Vec<ActiveEffect<'_>> = acting.iter().map(active).collect();
+        let mut along = ContactSimulator::new(contact, &actives);
+        (0..filtered.len())
             .map(|at| {
-                let step = if at == 0 { 0.0 } else { track.step };
-                let (position, velocity) = (track.position[at], track.velocity[at]);
-                along.step(at as f64 * track.step, step, position, velocity, track.acceleration[at], track.blur)
+                let step = if at == 0 { 0.0 } else { filtered.step };
+                let (position, velocity) = (filtered.position[at], filtered.velocity[at]);
+                along.step(
+                    at as f64 * filtered.step,
+                    step,
+                    position,
+                    velocity,
+                    filtered.acceleration[at],
+                    filtered.filter_width,
+                )
             })
             .collect()
     }
 
     /// What the sensor shows of `borne`.
     #[must_use]
-    pub fn reading(&self, values: &[f64], trial: usize, track: &Track, borne: &[f64]) -> Vec<f64> {
-        self.sensed(values, trial, track, borne, track.blur)
+    pub fn reading(&self, values: &[f64], trial: usize, filtered: &FilteredTrial, borne: &[f64]) -> Vec<f64> {
+        self.sensed(values, trial, filtered, borne, filtered.filter_width)
     }
 
     /// The rows that a sensor writes down, before any filter, of `borne` that is smooth.
     #[must_use]
-    pub fn rows(&self, values: &[f64], trial: usize, track: &Track, borne: &[f64]) -> Vec<f64> {
-        self.sensed(values, trial, track, borne, 0.0)
+    pub fn rows(&self, values: &[f64], trial: usize, filtered: &FilteredTrial, borne: &[f64]) -> Vec<f64> {
+        self.sensed(values, trial, filtered, borne, 0.0)
     }
 
-    fn sensed(&self, values: &[f64], trial: usize, track: &Track, borne: &[f64], added_blur: f64) -> Vec<f64> {
+    fn sensed(
+        &self,
+        values: &[f64],
+        trial: usize,
+        filtered: &FilteredTrial,
+        borne: &[f64],
+        added_filter_width: f64,
+    ) -> Vec<f64> {
         let mut force = borne.to_vec();
-        let acceleration = &track.acceleration;
-        let (step, blur) = (track.step, track.blur);
-        let mut reading = Reading { start: 0.0, step, blur, added_blur, acceleration, force: &mut force };
+        let acceleration = &filtered.acceleration;
+        let (step, filter_width) = (filtered.step, filtered.filter_width);
+        let mut reading =
+            Reading { start: 0.0, step, filter_width, added_filter_width, acceleration, force: &mut force };
         let mut sensors = self.at(Place::Sensor, values, trial);
-        sensors.sort_by_key(|(term, _)| term.effect.card().stage);
+        sensors.sort_by_key(|(term, _)| term.effect.spec().stage);
         for (term, values) in &sensors {
-            term.effect.read(term.form, values, &mut reading);
+            term.effect.act_on_reading(term.form, values, &mut reading);
         }
         force.iter_mut().for_each(|force| *force += self.force_zero);
         force
@@ -210,11 +226,11 @@ impl Model {
     /// The terms at `place` with their values in trial `trial`.
     #[must_use]
     pub fn at(&self, place: Place, values: &[f64], trial: usize) -> Vec<(Term, Vec<f64>)> {
-        let here = self.terms.iter().enumerate().filter(|(_, term)| term.effect.card().place == place);
-        here.map(|(at, term)| (*term, term.in_trial(&values[self.start_of(at)..], trial))).collect()
+        let here = self.terms.iter().enumerate().filter(|(_, term)| term.effect.spec().place == place);
+        here.map(|(at, term)| (*term, term.in_trial(&values[self.first_value_of(at)..], trial))).collect()
     }
 }
 
-fn active((term, values): &(Term, Vec<f64>)) -> Active<'_> {
-    Active { effect: term.effect, form: term.form, values }
+fn active((term, values): &(Term, Vec<f64>)) -> ActiveEffect<'_> {
+    ActiveEffect { effect: term.effect, form: term.form, values }
 }

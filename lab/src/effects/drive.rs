@@ -6,7 +6,7 @@ pub mod coulomb_friction;
 pub mod effort_lag;
 pub mod effort_saturation;
 pub mod gravity_load;
-mod link;
 pub mod load_dependent_friction;
 pub mod stribeck_friction;
 pub mod transmission_compliance;
+mod two_mass_link;

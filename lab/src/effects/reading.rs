@@ -1,6 +1,6 @@
 //! The force sensor over a whole trial, as effects see it and change it.
 
-use super::course::Course;
+use super::cubic_segment::CubicSegment;
 
 /// What the force sensor shows, sample by sample at equal steps.
 #[derive(Debug)]
@@ -10,9 +10,9 @@ pub struct Reading<'a> {
     /// Seconds from one sample to the next.
     pub step: f64,
     /// Width of the smoothing filter that the samples have passed, s; zero in a simulation.
-    pub blur: f64,
+    pub filter_width: f64,
     /// The same of what the sensor adds by itself: zero where rows of a sensor are made of a smoothed force.
-    pub added_blur: f64,
+    pub added_filter_width: f64,
     /// Acceleration of the tool.
     pub acceleration: &'a [f64],
     /// In: the force at the sensor. Out: its reading.
@@ -59,10 +59,10 @@ impl Reading<'_> {
         };
         let mut state = source[0];
         for at in 1..source.len() {
-            let course = if self.blur > 0.0 {
-                Course::smooth([source[at - 1], slope(at - 1)], [source[at], slope(at)], 1.0)
+            let course = if self.filter_width > 0.0 {
+                CubicSegment::smooth([source[at - 1], slope(at - 1)], [source[at], slope(at)], 1.0)
             } else {
-                Course::straight(source[at - 1], source[at])
+                CubicSegment::straight(source[at - 1], source[at])
             };
             state = course.lagged(state, ratio);
             self.force[at] = state;
@@ -72,6 +72,6 @@ impl Reading<'_> {
     /// What the smoothing filter leaves of a sine of that frequency that the sensor adds.
     #[must_use]
     pub fn passes(&self, frequency: f64) -> f64 {
-        (-0.5 * (std::f64::consts::TAU * frequency * self.added_blur).powi(2)).exp()
+        (-0.5 * (std::f64::consts::TAU * frequency * self.added_filter_width).powi(2)).exp()
     }
 }

@@ -3,7 +3,7 @@
 //! The table holds `name`, `form` where the effect has several laws, and for each parameter its value under
 //! [`key_of`] and perhaps its 95 % interval, two numbers, under [`interval_key`].
 
-use super::{Active, Effect, Form, Parameter, Place, find, key_of, slug};
+use super::{ActiveEffect, Effect, Form, Parameter, Place, find, key_of, slug};
 use crate::error::InputError;
 use crate::rig::{self, Coordinate, Rig, nearest};
 
@@ -25,12 +25,12 @@ impl Resolved {
     /// An effect, a form or a key that is unknown, a parameter that is absent, no number, or out of its physical bounds,
     /// an interval that is none.
     pub fn read(table: &rig::Effect, coordinate: Coordinate, origin: &str) -> Result<Self, InputError> {
-        let all = super::ALL.map(|effect| effect.card().name);
+        let all = super::ALL.map(|effect| effect.spec().name);
         let effect = find(&table.name).ok_or_else(|| {
             let place = format!("{origin}: [[effect]] name");
             InputError::new(place, format!("the unknown effect \"{}\"", table.name), one_of(&table.name, &all))
         })?;
-        let reader = Reader { table, coordinate, origin, forms: effect.card().forms };
+        let reader = Reader { table, coordinate, origin, forms: effect.spec().forms };
         let form = reader.form()?;
         let values = reader.forms[form].parameters.iter().map(|parameter| reader.value(parameter));
         Ok(Self { effect, form, values: values.collect::<Result<_, _>>()? })
@@ -38,8 +38,8 @@ impl Resolved {
 
     /// The effect at work.
     #[must_use]
-    pub fn active(&self) -> Active<'_> {
-        Active { effect: self.effect, form: self.form, values: &self.values }
+    pub fn active(&self) -> ActiveEffect<'_> {
+        ActiveEffect { effect: self.effect, form: self.form, values: &self.values }
     }
 }
 
@@ -50,7 +50,7 @@ impl Resolved {
 pub fn resolve_all(rig: &Rig, origin: &str) -> Result<Vec<Resolved>, InputError> {
     let resolve = |table: &rig::Effect| {
         let resolved = Resolved::read(table, rig.coordinate, origin)?;
-        let (needed, is_there) = match resolved.effect.card().place {
+        let (needed, is_there) = match resolved.effect.spec().place {
             Place::Contact | Place::Sensor => ("[contact]", rig.contact.is_some()),
             Place::Drive => ("[drive]", rig.drive.is_some()),
         };
@@ -70,10 +70,10 @@ pub fn to_table(
     values: &[f64],
     intervals: Option<&[(f64, f64)]>,
 ) -> rig::Effect {
-    let card = effect.card();
+    let spec = effect.spec();
     let mut table = toml::Table::new();
-    let Some(law) = card.forms.get(form) else { return rig::Effect { name: card.name.to_owned(), parameters: table } };
-    if card.forms.len() > 1 {
+    let Some(law) = spec.forms.get(form) else { return rig::Effect { name: spec.name.to_owned(), parameters: table } };
+    if spec.forms.len() > 1 {
         table.insert("form".to_owned(), law.name.into());
     }
     for (at, (parameter, value)) in law.parameters.iter().zip(values).enumerate() {
@@ -84,7 +84,7 @@ pub fn to_table(
             table.insert(interval_key(parameter, coordinate), vec![*low, *high].into());
         }
     }
-    rig::Effect { name: card.name.to_owned(), parameters: table }
+    rig::Effect { name: spec.name.to_owned(), parameters: table }
 }
 
 /// The key of a parameter's 95 % interval in a rig file: `alpha_ci95_n_s_m2`.

@@ -234,7 +234,7 @@ fn truth(contact: PaperContact) -> [f64; 2] {
 fn wrap(varying: &Traces<'_>) -> Result<Vec<(f64, f64)>> {
     let rig = varying.contact.rig()?;
     let settling = crate::effects::resolve_all(&rig, "the bubble wrap")?;
-    let settling = settling.iter().find(|resolved| resolved.effect.card().name == "time_varying_stiffness");
+    let settling = settling.iter().find(|resolved| resolved.effect.spec().name == "time_varying_stiffness");
     let (change, time) = settling.map_or((0.0, 1.0), |resolved| (resolved.values[0], resolved.values[1]));
     let [stiffness, _] = truth(varying.contact);
     let course = |t: f64| stiffness * (1.0 + change * (1.0 - (-(t + varying.begin) / time).exp()));

@@ -1,6 +1,6 @@
 //! What a rig file leaves open, filled in or demanded.
 
-use crate::effects::{Active, Place, Resolved, resolve_all};
+use crate::effects::{ActiveEffect, Place, Resolved, resolve_all};
 use crate::error::InputError;
 use crate::reference::{self, is_bench_sized};
 use crate::rig::{Control, Reference, Rig, Simulation};
@@ -38,13 +38,13 @@ pub struct CompletedRig {
 
 impl CompletedRig {
     /// The effects at work.
-    pub fn actives(&self) -> Vec<Active<'_>> {
+    pub fn actives(&self) -> Vec<ActiveEffect<'_>> {
         self.effects.iter().map(Resolved::active).collect()
     }
 
     /// Whether an effect acts on the motion or on the force behind it, not on its reading alone.
     pub fn has_motion_effects(&self) -> bool {
-        self.effects.iter().any(|resolved| resolved.effect.card().place != Place::Sensor)
+        self.effects.iter().any(|resolved| resolved.effect.spec().place != Place::Sensor)
     }
 }
 

@@ -1,15 +1,15 @@
 //! From the commanded effort to the acceleration of the tool, through the effects of the drive.
 
-use crate::effects::{Active, Memory, Place, Push, Stage};
+use crate::effects::{ActiveEffect, DriveState, EffectState, Place, Stage};
 use crate::rig::Drive;
 
 /// Rounding of a balance, in units of its largest term: what is left below it is nothing.
 const BALANCE_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 struct Term<'a> {
-    active: Active<'a>,
-    memory: Memory,
-    kept: Memory,
+    active: ActiveEffect<'a>,
+    memory: EffectState,
+    kept: EffectState,
 }
 
 /// The drive's effects and what they carry from one instant to the next.
@@ -44,11 +44,11 @@ pub struct DriveResponse {
 
 impl<'a> DriveEffects<'a> {
     /// Those of `actives` that act in the drive, in the order of their stages.
-    pub fn new(drive: Drive, actives: &[Active<'a>]) -> Self {
+    pub fn new(drive: Drive, actives: &[ActiveEffect<'a>]) -> Self {
         let mut terms: Vec<_> = actives
             .iter()
-            .filter(|active| active.effect.card().place == Place::Drive)
-            .map(|active| Term { active: *active, memory: Memory::default(), kept: Memory::default() })
+            .filter(|active| active.effect.spec().place == Place::Drive)
+            .map(|active| Term { active: *active, memory: EffectState::default(), kept: EffectState::default() })
             .collect();
         terms.sort_by_key(|term| term.active.stage());
         Self { drive, terms }
@@ -68,7 +68,7 @@ impl<'a> DriveEffects<'a> {
     ///
     /// A tool that stands still is held by friction as long as friction can: its acceleration is then exactly zero.
     pub fn pull(&mut self, at: Instant, force: f64) -> DriveResponse {
-        let mut push = Push {
+        let mut push = DriveState {
             time: at.time,
             step: at.step,
             position: at.position,
@@ -77,13 +77,13 @@ impl<'a> DriveEffects<'a> {
             jerk: 0.0,
             snap: 0.0,
             crackle: 0.0,
-            blur: 0.0,
-            speed_noise: 0.0,
-            still: f64::from(at.velocity == 0.0),
+            filter_width: 0.0,
+            velocity_noise: 0.0,
+            at_rest: f64::from(at.velocity == 0.0),
             force,
             force_rate: 0.0,
-            force_bend: 0.0,
-            force_jerk: 0.0,
+            force_second_derivative: 0.0,
+            force_third_derivative: 0.0,
             effort: at.effort,
             effort_rate: 0.0,
             inertia: self.drive.inertia,
@@ -94,18 +94,18 @@ impl<'a> DriveEffects<'a> {
             let at = self.terms.partition_point(|term| term.active.stage() < Stage::Friction);
             self.terms.split_at_mut(at)
         };
-        let act = |terms: &mut [Term<'_>], push: &mut Push| {
+        let act = |terms: &mut [Term<'_>], push: &mut DriveState| {
             for term in terms {
-                term.active.effect.push(term.active.form, term.active.values, &mut term.memory, push);
+                term.active.effect.act_on_drive(term.active.form, term.active.values, &mut term.memory, push);
             }
         };
         act(loads, &mut push);
-        let free = push.rest();
+        let free = push.balance_residual();
         act(frictions, &mut push);
-        let rest = push.rest();
+        let rest = push.balance_residual();
         let has_friction = rest != free;
         let size = push.effort.abs() + push.force.abs() + push.resistance.abs();
-        let is_held = has_friction && push.still > 0.0 && rest.abs() <= BALANCE_TOLERANCE * size;
+        let is_held = has_friction && push.at_rest > 0.0 && rest.abs() <= BALANCE_TOLERANCE * size;
         DriveResponse { acceleration: if is_held { 0.0 } else { rest / push.inertia }, has_friction }
     }
 }

@@ -1,6 +1,6 @@
 //! A tool that is wherever the reference says, whatever it takes.
 
-use crate::effects::{Active, Along};
+use crate::effects::{ActiveEffect, ContactSimulator};
 use crate::plant::State;
 use crate::rig::{Contact, Reference};
 
@@ -14,7 +14,7 @@ const DIFFERENCE_STEP_FRACTION: f64 = 1e-5;
 pub struct PrescribedMotion<'a> {
     reference: Reference,
     surface: f64,
-    along: Option<Along<'a>>,
+    along: Option<ContactSimulator<'a>>,
     /// Instants a row.
     steps_per_row: f64,
     time: f64,
@@ -33,11 +33,11 @@ fn acceleration(reference: &Reference, time: f64) -> f64 {
 
 impl<'a> PrescribedMotion<'a> {
     /// Along `reference`, whose depths count from the surface.
-    pub fn new(reference: Reference, contact: Option<Contact>, actives: &[Active<'a>]) -> Self {
+    pub fn new(reference: Reference, contact: Option<Contact>, actives: &[ActiveEffect<'a>]) -> Self {
         Self {
             reference,
             surface: contact.map_or(0.0, |contact| contact.surface),
-            along: contact.map(|contact| Along::new(contact, actives)),
+            along: contact.map(|contact| ContactSimulator::new(contact, actives)),
             steps_per_row: if actives.is_empty() { 1.0 } else { STEPS_PER_ROW },
             time: 0.0,
             has_begun: false,

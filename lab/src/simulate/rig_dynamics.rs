@@ -8,7 +8,7 @@
 //! crosses it by the blur of the contact law, and costs no more than the rest. The effect of zero size comes out as the
 //! nominal plant to some parts in a hundred thousand (a test holds it to ten).
 
-use crate::effects::{Active, Along, Place};
+use crate::effects::{ActiveEffect, ContactSimulator, Place};
 use crate::plant::{MAX_STEPS, Plant, State};
 use crate::rig::{Contact, Drive};
 
@@ -29,7 +29,7 @@ const MAX_LINK_DAMPING_RATIO: f64 = 0.3;
 /// The moving part, its contact and its drive, with what they carry along.
 pub struct RigDynamics<'a> {
     plant: Plant,
-    along: Option<Along<'a>>,
+    along: Option<ContactSimulator<'a>>,
     chain: DriveEffects<'a>,
     /// Longest step, s.
     max_step_s: f64,
@@ -45,11 +45,11 @@ pub struct RigDynamics<'a> {
 ///
 /// A parameter in the unit of a stiffness is one, and so on: the cards need no flag for it. A motor's share is of what
 /// the links before it leave of the inertia, and the damping of its link goes with it.
-pub fn stiffest(drive: Drive, contact: Option<Contact>, actives: &[Active<'_>]) -> Plant {
+pub fn stiffest(drive: Drive, contact: Option<Contact>, actives: &[ActiveEffect<'_>]) -> Plant {
     let mut contact = contact.unwrap_or(Contact { surface: 0.0, stiffness: 0.0, damping: 0.0, bilateral: true });
     let (mut tool, mut lightest) = (drive.inertia, f64::INFINITY);
-    for active in actives.iter().filter(|active| active.effect.card().place != Place::Sensor) {
-        let parameters = active.effect.card().forms[active.form].parameters;
+    for active in actives.iter().filter(|active| active.effect.spec().place != Place::Sensor) {
+        let parameters = active.effect.spec().forms[active.form].parameters;
         let mut spring = 0.0;
         let mut motor = 0.0;
         for (parameter, value) in parameters.iter().zip(active.values) {
@@ -75,7 +75,7 @@ impl<'a> RigDynamics<'a> {
     pub fn new(
         drive: Drive,
         contact: Option<Contact>,
-        actives: &[Active<'a>],
+        actives: &[ActiveEffect<'a>],
         position: f64,
         longest: f64,
         travel: f64,
@@ -83,7 +83,7 @@ impl<'a> RigDynamics<'a> {
         let plant = stiffest(drive, contact, actives);
         let mut body = Self {
             plant,
-            along: contact.map(|contact| Along::new(contact, actives)),
+            along: contact.map(|contact| ContactSimulator::new(contact, actives)),
             chain: DriveEffects::new(drive, actives),
             max_step_s: longest.min((plant.fastest_rate() * STEPS_PER_TIME_CONSTANT).recip()),
             probe_distance: 1e-4 * travel,
@@ -152,14 +152,14 @@ impl<'a> RigDynamics<'a> {
     ///
     /// The force may depend on the acceleration (a mass that is carried along): a = p(F(a)), p falling with F and F
     /// rising with a, has one solution, between zero and p(F(0)).
-    fn balance(&mut self, at: Instant, blur: f64) -> (f64, DriveResponse) {
+    fn balance(&mut self, at: Instant, filter_width: f64) -> (f64, DriveResponse) {
         if self.along.is_none() {
             return (0.0, self.chain.pull(at, 0.0));
         }
         self.save();
-        let (without, first) = self.attempt(at, 0.0, blur);
+        let (without, first) = self.attempt(at, 0.0, filter_width);
         self.rewind();
-        let (force, pull) = self.attempt(at, first.acceleration, blur);
+        let (force, pull) = self.attempt(at, first.acceleration, filter_width);
         if force == without {
             return (force, pull);
         }
@@ -170,7 +170,7 @@ impl<'a> RigDynamics<'a> {
         for _ in 0..MAX_ITERATIONS {
             let guess = high - high_rest * (high - low) / (high_rest - low_rest);
             self.rewind();
-            found = self.attempt(at, guess, blur);
+            found = self.attempt(at, guess, filter_width);
             let rest = guess - found.1.acceleration;
             if rest.abs() <= small || !guess.is_finite() {
                 break;
@@ -186,8 +186,10 @@ impl<'a> RigDynamics<'a> {
         found
     }
 
-    fn attempt(&mut self, at: Instant, acceleration: f64, blur: f64) -> (f64, DriveResponse) {
-        let step = |along: &mut Along<'_>| along.step(at.time, at.step, at.position, at.velocity, acceleration, blur);
+    fn attempt(&mut self, at: Instant, acceleration: f64, filter_width: f64) -> (f64, DriveResponse) {
+        let step = |along: &mut ContactSimulator<'_>| {
+            along.step(at.time, at.step, at.position, at.velocity, acceleration, filter_width)
+        };
         let force = self.along.as_mut().map_or(0.0, step);
         (force, self.chain.pull(at, force))
     }
@@ -214,12 +216,12 @@ impl<'a> RigDynamics<'a> {
     }
 
     fn save(&mut self) {
-        self.along.iter_mut().for_each(Along::keep);
+        self.along.iter_mut().for_each(ContactSimulator::keep);
         self.chain.save();
     }
 
     fn rewind(&mut self) {
-        self.along.iter_mut().for_each(Along::rewind);
+        self.along.iter_mut().for_each(ContactSimulator::rewind);
         self.chain.rewind();
     }
 }

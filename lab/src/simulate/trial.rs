@@ -192,12 +192,18 @@ impl<'a> Run<'a> {
         let Some(force) = &mut self.recording.force else { return };
         let step = self.setting.simulation.rate_hz.recip();
         let mut actives = self.setting.actives();
-        actives.retain(|active| active.effect.card().place == Place::Sensor);
-        actives.sort_by_key(crate::effects::Active::stage);
+        actives.retain(|active| active.effect.spec().place == Place::Sensor);
+        actives.sort_by_key(crate::effects::ActiveEffect::stage);
         for active in actives {
-            let mut reading =
-                Reading { start: 0.0, step, blur: 0.0, added_blur: 0.0, acceleration: &self.acceleration, force };
-            active.effect.read(active.form, active.values, &mut reading);
+            let mut reading = Reading {
+                start: 0.0,
+                step,
+                filter_width: 0.0,
+                added_filter_width: 0.0,
+                acceleration: &self.acceleration,
+                force,
+            };
+            active.effect.act_on_reading(active.form, active.values, &mut reading);
         }
         force.iter_mut().for_each(|force| *force = self.load_cell.read(*force, &mut self.rng));
     }

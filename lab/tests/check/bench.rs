@@ -1,7 +1,7 @@
 //! A bench in code: a course of the tool, the forces that follow from it, and what may go wrong with the columns.
 
 use palpate_lab::diagnose::check::check;
-use palpate_lab::diagnose::signals::uniform_trial::Raw;
+use palpate_lab::diagnose::signals::uniform_trial::UniformTrial;
 use palpate_lab::recording::Recording;
 use palpate_lab::rig::{Contact, Coordinate, Drive, Rig};
 use palpate_lab::sensors::Figures;
@@ -205,7 +205,8 @@ pub fn found(benches: &[Bench]) -> Vec<String> {
         |(at, bench): (usize, &Bench)| Recording { name: format!("trial-{}.csv", at + 1), ..bench.trial.clone() };
     let trials: Vec<Recording> = benches.iter().enumerate().map(name).collect();
     let period = trials.iter().map(Recording::period).fold(0.0, f64::max);
-    let raws: Vec<Raw> = trials.iter().map(|trial| Raw::of(trial, Figures::of(rig, trial), period)).collect();
+    let raws: Vec<UniformTrial> =
+        trials.iter().map(|trial| UniformTrial::of(trial, Figures::of(rig, trial), period)).collect();
     let word = |grave: bool| if grave { "grave" } else { "mild" };
     check(rig, &trials, &raws).into_iter().map(|f| format!("{} {}: {}", word(f.grave), f.place, f.text)).collect()
 }

@@ -25,14 +25,14 @@ fn the_page_tells_all_that_is_known_within_eighty_columns() {
     let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let page = flat(&page);
     for effect in ALL {
-        let card = effect.card();
-        let laws = card.forms.iter().flat_map(|form| {
+        let spec = effect.spec();
+        let laws = spec.forms.iter().flat_map(|form| {
             let parameters = form.parameters.iter().flat_map(|p| [p.name, p.meaning, p.unit.linear, p.unit.rotary]);
             [form.name, form.equation].into_iter().chain(parameters.filter(|word| *word != "1"))
         });
-        let card_words = [card.name, card.place.name(), card.statement, card.excited_by, card.source];
-        for words in card_words.into_iter().chain(laws).chain(card.resembles.iter().copied()) {
-            assert!(page.contains(&flat(words)), "{}: {words}", card.name);
+        let card_words = [spec.name, spec.place.name(), spec.statement, spec.excited_by, spec.source];
+        for words in card_words.into_iter().chain(laws).chain(spec.resembles.iter().copied()) {
+            assert!(page.contains(&flat(words)), "{}: {words}", spec.name);
         }
     }
 }
@@ -54,9 +54,9 @@ fn machines_get_the_same_as_json_on_standard_output_or_in_a_file() {
     let listed = document["effects"].as_array().unwrap();
     assert_eq!(listed.len(), ALL.len());
     for (entry, effect) in listed.iter().zip(ALL) {
-        let card = effect.card();
-        assert_eq!((&entry["name"], &entry["acts_in"]), (&card.name.into(), &card.place.name().into()));
-        let parameter = &card.forms[0].parameters[0];
+        let spec = effect.spec();
+        assert_eq!((&entry["name"], &entry["acts_in"]), (&spec.name.into(), &spec.place.name().into()));
+        let parameter = &spec.forms[0].parameters[0];
         let shown = &entry["forms"][0]["parameters"][0];
         assert_eq!(shown["rotary"]["key"], key_of(parameter, Coordinate::Rotary));
         assert_eq!(shown["high"].as_f64(), parameter.high.is_finite().then_some(parameter.high));

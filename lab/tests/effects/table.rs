@@ -16,7 +16,7 @@ fn every_effect_comes_back_from_its_table_to_the_bit() {
         Rig::parse(&format!("[rig]\nname = \"r\"\ncoordinate = \"{}\"\n", coordinate.name()), "rig.toml").unwrap()
     };
     for (coordinate, effect) in [Coordinate::Linear, Coordinate::Rotary].into_iter().flat_map(|c| ALL.map(|e| (c, e))) {
-        for form in 0..effect.card().forms.len() {
+        for form in 0..effect.spec().forms.len() {
             for start in effect.starts(form, &scene()) {
                 // Numbers with all their digits.
                 let values: Vec<_> = start.values.iter().map(|value| value * (1.0 + 1e-3 / 3.0)).collect();
@@ -27,8 +27,8 @@ fn every_effect_comes_back_from_its_table_to_the_bit() {
                 let again = Rig::parse(&rig.to_toml(), "again.toml").unwrap();
                 assert_eq!(again, rig, "{}", rig.to_toml());
                 let resolved = Resolved::read(&again.effects[0], coordinate, "again.toml").map_err(|e| e.to_string());
-                let resolved = resolved.map(|found| (found.effect.card().name, found.form, found.values));
-                assert_eq!(resolved, Ok((effect.card().name, form, values)), "{}", rig.to_toml());
+                let resolved = resolved.map(|found| (found.effect.spec().name, found.form, found.values));
+                assert_eq!(resolved, Ok((effect.spec().name, form, values)), "{}", rig.to_toml());
             }
         }
     }
@@ -51,7 +51,7 @@ fn the_form_follows_from_the_keys_where_it_is_not_named() {
     let form = |text: &str| {
         let rig = Rig::parse(&(rig(REFERENCE, true).to_toml() + "[[effect]]\n" + text), "rig.toml").unwrap();
         let effects = resolve_all(&rig, "rig.toml").map_err(|error| error.to_string()).unwrap();
-        (effects[0].effect.card().forms[effects[0].form].name, effects[0].values.clone())
+        (effects[0].effect.spec().forms[effects[0].form].name, effects[0].values.clone())
     };
     assert_eq!(form("name = \"force_drift\"\nrate_n_s = 1\n"), ("ramp", vec![1.0]));
     assert_eq!(form("name = \"force_drift\"\nrate_n_s = 1\noffset_n = 2\n"), ("offset_ramp", vec![1.0, 2.0]));

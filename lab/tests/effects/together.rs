@@ -1,13 +1,13 @@
 //! All effects by the same rules: off at zero, and each does something.
 
 use crate::bench::{REFERENCE, apart, force, largest, rig, run, with};
-use palpate_lab::effects::{ALL, Scene, to_table};
+use palpate_lab::effects::{ALL, ExcitationStats, to_table};
 use palpate_lab::recording::Recording;
 use palpate_lab::rig::{Rig, Sensors};
 
 /// What the bench of these tests measures.
-pub fn scene() -> Scene {
-    Scene {
+pub fn scene() -> ExcitationStats {
+    ExcitationStats {
         depth: 9e-3,
         speed: 0.06,
         acceleration: 2.0,
@@ -17,7 +17,7 @@ pub fn scene() -> Scene {
         duration: 4.0,
         step: 5e-3,
         drive_step: 1e-2,
-        pace: 1e-3,
+        one_step_speed: 1e-3,
         resolution: 1e-5,
         sample: 1e-3,
         stiffness: 300.0,
@@ -46,21 +46,21 @@ fn every_effect_runs_at_its_first_start_and_changes_something() {
     let truth = run(&nominal);
     let mut tried = 0;
     for effect in ALL {
-        let card = effect.card();
-        for form in 0..card.forms.len() {
+        let spec = effect.spec();
+        for form in 0..spec.forms.len() {
             let Some(start) = effect.starts(form, &scene()).into_iter().next() else {
                 // What is periodic starts from the strongest tone of the residual.
-                let begins = card.name == "gravity_load" || effect.tones(form, &scene()).is_some();
-                assert!(begins, "{} {} has no start", card.name, card.forms[form].name);
+                let begins = spec.name == "gravity_load" || effect.frequency_search(form, &scene()).is_some();
+                assert!(begins, "{} {} has no start", spec.name, spec.forms[form].name);
                 continue;
             };
             let table = to_table(effect, form, nominal.coordinate, &start.values, None);
             let recording = run(&Rig { effects: vec![table], ..nominal.clone() });
-            let name = format!("{} {}", card.name, card.forms[form].name);
+            let name = format!("{} {}", spec.name, spec.forms[form].name);
             let is_sound = |values: &[f64]| values.iter().all(|value| value.is_finite());
             assert!(is_sound(&recording.position) && is_sound(force(&recording)), "{name}: not finite");
             // A motor on a spring of 2 Hz, held by the position of its load: that loop does run away.
-            let is_tame = largest(&recording.position) < 0.1 || card.name == "transmission_compliance";
+            let is_tame = largest(&recording.position) < 0.1 || spec.name == "transmission_compliance";
             assert!(is_tame, "{name}: the tool has run away");
             let apart = furthest(&truth, &recording);
             assert!(apart > 3e-4, "{name}: {apart:.1e} of anything");

@@ -16,11 +16,11 @@ pub const CHECKED: [&str; 8] = [
 
 const BENCH: Size = Size { depth: 9e-3, force: 4.0, rows: 6000, rate: 1000.0, lacks: [1.0, 0.9, 0.0] };
 
-pub fn explained() -> (Answer, Pictures) {
-    let answer = Answer {
+pub fn explained() -> (Diagnosis, PlotData) {
+    let answer = Diagnosis {
         summary: "The damping grows with depth and the drive drags; the simulation knows neither.".into(),
         physics: vec![crossley(), coulomb()],
-        rivals: vec![Rival {
+        alternatives: vec![Alternative {
             physics: vec!["quadratic_damping".into(), "coulomb_friction".into()],
             held_out_gain: 0.93,
             separated_by: "press at one speed to 3 mm and to 9 mm: only damping that grows with depth tells them apart"
@@ -59,20 +59,20 @@ pub fn explained() -> (Answer, Pictures) {
     let mut all = maps(&BENCH, "force", "m", 46.0, 1.1);
     all.extend(maps(&BENCH, "effort", "m", 1300.0, 1.4));
     let pictures =
-        Pictures { traces, maps: all, scores: scores(), experiment: Some(experiment(9e-3)), ..blank("bench A") };
+        PlotData { traces, maps: all, scores: scores(), experiment: Some(experiment(9e-3)), ..blank("bench A") };
     (answer, pictures)
 }
 
-pub fn no_mismatch() -> (Answer, Pictures) {
+pub fn no_mismatch() -> (Diagnosis, PlotData) {
     let size = Size { lacks: [0.0; 3], ..BENCH };
-    let answer = Answer {
+    let answer = Diagnosis {
         summary: "The simulation agrees with the recordings as far as the sensors can tell.".into(),
         fit: goodness("force", [0.0443, 0.0441, 0.0441, 0.044], 0.0),
         channels: vec![goodness("force", [0.0443, 0.0441, 0.0441, 0.044], 0.0)],
         nominal: vec![nominal("stiffness_n_m", "N/m", 300.0, 300.4, 2.3)],
         ..bare(Verdict::NoMismatch)
     };
-    let pictures = Pictures {
+    let pictures = PlotData {
         traces: vec![trace(&size, "trial-1.csv", "force", 1)],
         maps: maps(&size, "force", "m", 1.1, 1.1),
         ..blank("bench A")
@@ -80,9 +80,9 @@ pub fn no_mismatch() -> (Answer, Pictures) {
     (answer, pictures)
 }
 
-pub fn parameters() -> (Answer, Pictures) {
+pub fn parameters() -> (Diagnosis, PlotData) {
     let size = Size { lacks: [0.7, 0.0, 0.0], ..BENCH };
-    let answer = Answer {
+    let answer = Diagnosis {
         summary: "The contact is stiffer than the rig file says; nothing else is missing.".into(),
         fit: goodness("force", [0.61, 0.0449, 0.0449, 0.044], 0.0),
         channels: vec![goodness("force", [0.61, 0.0449, 0.0449, 0.044], 0.0)],
@@ -93,9 +93,13 @@ pub fn parameters() -> (Answer, Pictures) {
         locations: vec![location("force", "trial-1.csv", [0.0, 5.99], Phase::Loading, 0.7, "x 4-9 mm")],
         ..bare(Verdict::Parameters)
     };
-    let scores =
-        scores().into_iter().map(|bar| Bar { held_out_gain: 0.01 * bar.held_out_gain, p_value: 0.6, role: "", ..bar });
-    let pictures = Pictures {
+    let scores = scores().into_iter().map(|bar| EffectEvidence {
+        held_out_gain: 0.01 * bar.held_out_gain,
+        p_value: 0.6,
+        role: "",
+        ..bar
+    });
+    let pictures = PlotData {
         traces: vec![trace(&size, "trial-1.csv", "force", 1)],
         scores: scores.collect(),
         ..blank("bench A")
@@ -103,7 +107,7 @@ pub fn parameters() -> (Answer, Pictures) {
     (answer, pictures)
 }
 
-pub fn unknown() -> (Answer, Pictures) {
+pub fn unknown() -> (Diagnosis, PlotData) {
     let size = Size { lacks: [1.0, 0.9, 0.9], ..BENCH };
     let physics = Physics {
         name: "unknown".into(),
@@ -114,7 +118,7 @@ pub fn unknown() -> (Answer, Pictures) {
         parameters: Vec::new(),
         on_drive: None,
     };
-    let answer = Answer {
+    let answer = Diagnosis {
         summary: "Something that is not in the list acts while the tool draws back.".into(),
         physics: vec![physics],
         locations: vec![location(
@@ -129,9 +133,13 @@ pub fn unknown() -> (Answer, Pictures) {
         channels: vec![goodness("force", [0.41, 0.305, 0.305, 0.044], 0.0)],
         ..bare(Verdict::Unknown)
     };
-    let scores =
-        scores().into_iter().map(|bar| Bar { held_out_gain: 0.1 * bar.held_out_gain, p_value: 0.2, role: "", ..bar });
-    let pictures = Pictures {
+    let scores = scores().into_iter().map(|bar| EffectEvidence {
+        held_out_gain: 0.1 * bar.held_out_gain,
+        p_value: 0.2,
+        role: "",
+        ..bar
+    });
+    let pictures = PlotData {
         traces: vec![trace(&size, "trial-1.csv", "force", 1)],
         maps: maps(&size, "force", "m", 46.0, 46.0),
         scores: scores.collect(),
@@ -141,7 +149,7 @@ pub fn unknown() -> (Answer, Pictures) {
 }
 
 /// A microscope's lever that turns: nanonewton metres over microradians.
-pub fn nano() -> (Answer, Pictures) {
+pub fn nano() -> (Diagnosis, PlotData) {
     let size = Size { depth: 4e-6, force: 3e-9, lacks: [1.0, 0.8, 0.1], ..BENCH };
     let (mut answer, _) = explained();
     answer.verdict = Verdict::PartlyExplained;
@@ -151,7 +159,7 @@ pub fn nano() -> (Answer, Pictures) {
         value("offset", -1.2e-9, "N m", 0.3e-9),
         value("moved_mass", 2.5e-12, "kg m^2", 0.2e-12),
     ];
-    answer.rivals.clear();
+    answer.alternatives.clear();
     answer.locations.truncate(1);
     let mut fit = goodness("force", [4.1e-10, 3.1e-10, 0.8e-10, 0.44e-10], 0.91);
     fit.unit = "N m";
@@ -162,7 +170,7 @@ pub fn nano() -> (Answer, Pictures) {
         nominal("stiffness_n_m_rad", "N m/rad", 7e-4, 7.3e-4, 0.05e-4),
         nominal("inertia_kg_m2", "kg m^2", 2.0e-12, 2.1e-12, 0.3e-12),
     ];
-    let pictures = Pictures {
+    let pictures = PlotData {
         position_unit: "rad",
         force_unit: "N m",
         traces: vec![trace(&size, "trial-1.csv", "force", 4)],
@@ -173,13 +181,13 @@ pub fn nano() -> (Answer, Pictures) {
     (answer, pictures)
 }
 
-fn bare(verdict: Verdict) -> Answer {
-    Answer {
+fn bare(verdict: Verdict) -> Diagnosis {
+    Diagnosis {
         schema: "palpate.diagnosis/1",
         verdict,
         summary: String::new(),
         physics: Vec::new(),
-        rivals: Vec::new(),
+        alternatives: Vec::new(),
         locations: Vec::new(),
         fit: goodness("force", [1.0; 4], 0.0),
         channels: Vec::new(),
@@ -189,8 +197,8 @@ fn bare(verdict: Verdict) -> Answer {
     }
 }
 
-fn blank(rig: &str) -> Pictures {
-    Pictures {
+fn blank(rig: &str) -> PlotData {
+    PlotData {
         rig: rig.into(),
         position_unit: "m",
         force_unit: "N",
@@ -234,9 +242,9 @@ fn nominal(name: &str, unit: &str, given: f64, fitted: f64, half_width: f64) -> 
     Nominal { name: name.into(), unit: unit.into(), given, fitted, ci95: [fitted - half_width, fitted + half_width] }
 }
 
-fn goodness(channel: &'static str, [as_given, refitted, improved, noise_floor]: [f64; 4], share: f64) -> Goodness {
+fn goodness(channel: &'static str, [as_given, refitted, improved, noise_floor]: [f64; 4], share: f64) -> FitQuality {
     let (unit, held_out, band_hz) = ("N", true, 120.0);
-    Goodness { channel, unit, noise_floor, as_given, refitted, improved, held_out, explained_share: share, band_hz }
+    FitQuality { channel, unit, noise_floor, as_given, refitted, improved, held_out, explained_share: share, band_hz }
 }
 
 fn location(
@@ -250,10 +258,10 @@ fn location(
     Location { channel, trial: trial.into(), start_s, end_s, phase, share, states: states.into() }
 }
 
-fn scores() -> Vec<Bar> {
+fn scores() -> Vec<EffectEvidence> {
     let gains = [0.94, 0.55, 0.91, 0.3, 0.04, 0.02, -0.01, -0.2];
     let bars = CHECKED.iter().zip(gains).enumerate();
-    bars.map(|(n, (name, held_out_gain))| Bar {
+    bars.map(|(n, (name, held_out_gain))| EffectEvidence {
         name,
         held_out_gain,
         p_value: [0.0002, 0.004, 0.0004, 0.03, 0.4, 0.7, 0.9, 0.99][n],

@@ -2,8 +2,8 @@
 
 use crate::answers::explained;
 use crate::full::Full;
-use crate::{Diagnosis, every_kind, written};
-use palpate_lab::diagnose::report::diagnosis::{Map, Pictures};
+use crate::{Report, every_kind, written};
+use palpate_lab::diagnose::report::diagnosis::{BinnedResidual, PlotData};
 use palpate_lab::diagnose::report::html;
 use std::io::ErrorKind;
 
@@ -48,8 +48,8 @@ fn hostile_names_stay_text() {
         .filter(|trace| trace.trial == "trial-1.csv")
         .for_each(|trace| trace.trial = hostile.into());
     answer.findings.iter_mut().for_each(|finding| (finding.place, finding.text) = (hostile.into(), hostile.into()));
-    answer.rivals[0].separated_by = hostile.into();
-    answer.rivals[0].physics[0] = hostile.into();
+    answer.alternatives[0].separated_by = hostile.into();
+    answer.alternatives[0].physics[0] = hostile.into();
     answer.nominal[0].name = hostile.into();
     answer.nominal[0].unit = hostile.into();
     answer.physics[0].statement = hostile.into();
@@ -89,7 +89,7 @@ fn what_is_no_number_is_unknown() {
 }
 
 /// Every number of a diagnosis gone bad.
-fn spoilt((mut answer, mut pictures): Diagnosis, bad: f64) -> Diagnosis {
+fn spoilt((mut answer, mut pictures): Report, bad: f64) -> Report {
     for fit in answer.channels.iter_mut().chain([&mut answer.fit]) {
         (fit.as_given, fit.refitted, fit.improved, fit.noise_floor, fit.explained_share, fit.band_hz) =
             (bad, bad, bad, bad, bad, bad);
@@ -98,7 +98,7 @@ fn spoilt((mut answer, mut pictures): Diagnosis, bad: f64) -> Diagnosis {
         (physics.evidence.held_out_gain, physics.evidence.p_value) = (bad, bad);
         physics.parameters.iter_mut().for_each(|value| (value.value, value.ci95) = (bad, [bad, bad]));
     }
-    answer.rivals.iter_mut().for_each(|rival| rival.held_out_gain = bad);
+    answer.alternatives.iter_mut().for_each(|rival| rival.held_out_gain = bad);
     answer.locations.iter_mut().for_each(|place| (place.share, place.start_s, place.end_s) = (bad, bad, bad));
     answer.nominal.iter_mut().for_each(|value| (value.given, value.fitted, value.ci95) = (bad, bad, [bad, bad]));
     for map in &mut pictures.maps {
@@ -108,14 +108,14 @@ fn spoilt((mut answer, mut pictures): Diagnosis, bad: f64) -> Diagnosis {
     pictures.experiment.iter_mut().for_each(|next| next.reference[7] = bad);
     for trace in &mut pictures.traces {
         trace.improved.fill(bad as f32);
-        trace.floor.fill(bad as f32);
+        trace.expected_noise.fill(bad as f32);
     }
     (answer, pictures)
 }
 
 #[test]
 fn vectors_of_unequal_length_are_refused() {
-    let refused = |spoil: fn(&mut Pictures), named: &str| {
+    let refused = |spoil: fn(&mut PlotData), named: &str| {
         let (answer, mut pictures) = explained();
         spoil(&mut pictures);
         let mut out = Vec::new();
@@ -123,9 +123,9 @@ fn vectors_of_unequal_length_are_refused() {
         assert_eq!(error.kind(), ErrorKind::InvalidInput);
         assert!(error.to_string().contains(named) && out.is_empty(), "{error}");
     };
-    refused(|pictures| pictures.traces[1].floor.truncate(9), "trial-1.csv");
+    refused(|pictures| pictures.traces[1].expected_noise.truncate(9), "trial-1.csv");
     refused(|pictures| pictures.maps[1].share.truncate(1), "depth");
-    refused(|pictures| pictures.maps[2] = Map { before: vec![1.0], ..pictures.maps[2].clone() }, "speed");
+    refused(|pictures| pictures.maps[2] = BinnedResidual { before: vec![1.0], ..pictures.maps[2].clone() }, "speed");
     refused(|pictures| pictures.experiment.iter_mut().for_each(|next| next.time.truncate(3)), "experiment");
 }
 

@@ -1,6 +1,6 @@
 //! Synthetic signals: a tool that presses into something whose damping grows with depth.
 
-use palpate_lab::diagnose::report::diagnosis::{Map, Phase, Trace};
+use palpate_lab::diagnose::report::diagnosis::{BinnedResidual, Phase, Trace};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -29,8 +29,8 @@ pub fn trace(size: &Size, trial: &str, channel: &'static str, seed: u64) -> Trac
         as_given: Vec::new(),
         refitted: Vec::new(),
         improved: Vec::new(),
-        floor: Vec::new(),
-        seen: Vec::new(),
+        expected_noise: Vec::new(),
+        valid: Vec::new(),
     };
     for row in 0..size.rows {
         let time = row as f64 / size.rate;
@@ -47,17 +47,17 @@ pub fn trace(size: &Size, trial: &str, channel: &'static str, seed: u64) -> Trac
         trace.as_given.push((given * (1.0 - 0.15 * size.lacks[0])) as f32);
         trace.refitted.push(refitted as f32);
         trace.improved.push(improved as f32);
-        trace.floor.push((floor * (1.0 + 0.5 * touches)) as f32);
-        trace.seen.push(row > 9 && row + 10 < size.rows);
+        trace.expected_noise.push((floor * (1.0 + 0.5 * touches)) as f32);
+        trace.valid.push(row > 9 && row + 10 < size.rows);
     }
     trace
 }
 
 /// Of the phases, of depth, speed, time and frequency; `loud` times the noise where it is most.
-pub fn maps(size: &Size, channel: &'static str, unit: &str, loud: f64, cured: f64) -> Vec<Map> {
+pub fn maps(size: &Size, channel: &'static str, unit: &str, loud: f64, cured: f64) -> Vec<BinnedResidual> {
     let shape = |weights: &[f64], along: &'static str, unit: String, labels: Vec<String>| {
         let total: f64 = weights.iter().sum();
-        Map {
+        BinnedResidual {
             channel,
             along,
             unit,

@@ -6,15 +6,15 @@
 
 use anyhow::{Context as _, Result};
 
-use crate::diagnose::bootstrap::problem::Study;
-use crate::diagnose::bootstrap::sampler::Studio;
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
+use crate::diagnose::bootstrap::sampler::BootstrapSampler;
 use crate::diagnose::linalg::energy;
-use crate::diagnose::model::{Channels, Rest, index};
-use crate::diagnose::signals::bandwidth::lenses;
-use crate::diagnose::signals::derivative_filter::Lens;
-use crate::diagnose::signals::filtered_trial::Track;
-use crate::diagnose::signals::uniform_trial::Raw;
-use crate::diagnose::{sensed, study};
+use crate::diagnose::model::{Channels, Residual, index};
+use crate::diagnose::signals::bandwidth::analysis_filters;
+use crate::diagnose::signals::derivative_filter::DerivativeFilter;
+use crate::diagnose::signals::filtered_trial::FilteredTrial;
+use crate::diagnose::signals::uniform_trial::UniformTrial;
+use crate::diagnose::{problem, sensed};
 use crate::recording::Recording;
 use crate::rig::Rig;
 
@@ -43,7 +43,7 @@ const SEED: u64 = 1;
 /// # Errors
 /// Trials that the rig does not predict.
 pub fn refitted(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Rig> {
-    let study = study(rig, origin, sensed(rig, origin, trials)?, SEED)?;
+    let study = problem(rig, origin, sensed(rig, origin, trials)?, SEED)?;
     let values = settled(&study);
     let mut fresh = rig.clone();
     if let Some(contact) = &mut fresh.contact {
@@ -60,9 +60,9 @@ pub fn refitted(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Rig> {
 
 /// The nominal values of least squares. A search takes steps in measures of the depth: a preload that lies metres beyond,
 /// as that of a clamped spring can, is reached by searching again from where the last one gave up.
-fn settled(study: &Study) -> Vec<f64> {
-    let whitener = study.even_floors();
-    let mut values = study.first_fit();
+fn settled(study: &IdentificationProblem) -> Vec<f64> {
+    let whitener = study.uniform_noise_models();
+    let mut values = study.initial_fit();
     let mut least = f64::INFINITY;
     for _ in 0..SEARCHES {
         let fit = study.fit(&study.nominal, &values, &whitener);
@@ -83,9 +83,9 @@ pub fn left<const N: usize>(models: [&Rig; N], origin: &str, trials: &[Recording
     let (mut sums, mut rows) = ([0.0; N], 0usize);
     for trial in trials {
         let raws = sensed(models[0], origin, std::slice::from_ref(trial))?;
-        let lenses = lenses(models[0], &raws);
+        let analysis_filters = analysis_filters(models[0], &raws);
         for (at, model) in models.iter().enumerate() {
-            let scored = scored(model, origin, &raws, &lenses)?;
+            let scored = scored(model, origin, &raws, &analysis_filters)?;
             sums[at] += energy(&scored);
             rows += if at == 0 { scored.len() } else { 0 };
         }
@@ -95,24 +95,29 @@ pub fn left<const N: usize>(models: [&Rig; N], origin: &str, trials: &[Recording
 }
 
 /// Residuals of `rig` on the scored rows of one trial.
-fn scored(rig: &Rig, origin: &str, raws: &[Raw], lenses: &(Lens, Lens)) -> Result<Vec<f64>> {
-    let studio = Studio::new(raws.to_vec(), lenses.0.clone(), lenses.1.clone(), SEED);
-    let study = Study::new(rig, origin, studio)?;
-    let trial = study.studio.trials.first().context("there is no trial")?;
+fn scored(
+    rig: &Rig,
+    origin: &str,
+    raws: &[UniformTrial],
+    analysis_filters: &(DerivativeFilter, DerivativeFilter),
+) -> Result<Vec<f64>> {
+    let studio = BootstrapSampler::new(raws.to_vec(), analysis_filters.0.clone(), analysis_filters.1.clone(), SEED);
+    let study = IdentificationProblem::new(rig, origin, studio)?;
+    let trial = study.sampler.trials.first().context("there is no trial")?;
     let effort = study.nominal.contact.is_none();
     let (values, from) = if effort {
         (study.given.clone(), 0)
     } else {
         placed(&study, &trial.contact, beginning(&study, &trial.contact))
     };
-    let rest = study.nominal.rest(&values, trial, Channels::BOTH);
+    let rest = study.nominal.residual(&values, trial, Channels::BOTH);
     let values = if effort { rest.effort } else { rest.force };
-    let seen = values.iter().zip(&trial.track(effort).seen).skip(from);
-    Ok(seen.filter(|(_, seen)| **seen).map(|(value, _)| *value).collect())
+    let valid = values.iter().zip(&trial.filtered(effort).valid).skip(from);
+    Ok(valid.filter(|(_, valid)| **valid).map(|(value, _)| *value).collect())
 }
 
 /// The row at which the beginning ends.
-fn beginning(study: &Study, track: &Track) -> usize {
+fn beginning(study: &IdentificationProblem, track: &FilteredTrial) -> usize {
     let share = if study.nominal.contact == Some(true) { BEGINNING_CLAMPED } else { BEGINNING };
     let gone: Vec<f64> = match &track.force {
         Some(force) => force.iter().map(|value| (value - force[0]).abs()).collect(),
@@ -124,7 +129,7 @@ fn beginning(study: &Study, track: &Track) -> usize {
 }
 
 /// The values of the rig file with the surface that leaves least of the rows before `end`; and `end`.
-fn placed(study: &Study, track: &Track, end: usize) -> (Vec<f64>, usize) {
+fn placed(study: &IdentificationProblem, track: &FilteredTrial, end: usize) -> (Vec<f64>, usize) {
     let mut starts = vec![study.given[index::SURFACE]];
     if study.nominal.contact == Some(false) {
         starts.extend(study.surfaces());
@@ -137,7 +142,7 @@ fn placed(study: &Study, track: &Track, end: usize) -> (Vec<f64>, usize) {
 }
 
 /// The surface that Gauss and Newton's method finds from `surface`, and the energy that it leaves before `end`.
-fn descend(study: &Study, track: &Track, end: usize, mut surface: f64) -> (f64, f64) {
+fn descend(study: &IdentificationProblem, track: &FilteredTrial, end: usize, mut surface: f64) -> (f64, f64) {
     let travel = track.position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
     let nudge = 1e-4 * (travel.1 - travel.0);
     let mut rest = before(study, end, surface);
@@ -166,13 +171,13 @@ fn descend(study: &Study, track: &Track, end: usize, mut surface: f64) -> (f64, 
 }
 
 /// What is left of the rows before `end` with the surface at `surface`.
-fn before(study: &Study, end: usize, surface: f64) -> Vec<f64> {
+fn before(study: &IdentificationProblem, end: usize, surface: f64) -> Vec<f64> {
     let mut values = study.given.clone();
     values[index::SURFACE] = surface;
-    let trial = &study.studio.trials[0];
-    let Rest { force, .. } = study.nominal.rest(&values, trial, Channels { force: true, effort: false });
-    let seen = force.iter().zip(&trial.contact.seen).take(end);
-    seen.map(|(value, seen)| if *seen { *value } else { 0.0 }).collect()
+    let trial = &study.sampler.trials[0];
+    let Residual { force, .. } = study.nominal.residual(&values, trial, Channels { force: true, effort: false });
+    let valid = force.iter().zip(&trial.contact.valid).take(end);
+    valid.map(|(value, valid)| if *valid { *value } else { 0.0 }).collect()
 }
 
 #[cfg(test)]

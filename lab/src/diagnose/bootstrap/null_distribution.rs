@@ -5,14 +5,14 @@
 /// Figures here are the greatest of several chances, so their upper tail falls exponentially: Gumbel's law. Its scale is
 /// taken from the twins' spread, and never below that of the energy of one white value, exp(-x/2).
 #[derive(Debug, Clone, Copy)]
-pub struct Null {
+pub struct NullDistribution {
     place: f64,
     scale: f64,
 }
 
-const EULER: f64 = 0.577_215_664_901_532_9;
+const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 
-impl Null {
+impl NullDistribution {
     /// From the figures of twins; `least` is the least scale of the tail.
     #[must_use]
     pub fn of(figures: &[f64], least: f64) -> Self {
@@ -20,7 +20,7 @@ impl Null {
         let mean = figures.iter().sum::<f64>() / count;
         let variance = figures.iter().map(|figure| (figure - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
         let moments = variance.sqrt() * 6f64.sqrt() / std::f64::consts::PI;
-        Self { place: mean - EULER * moments, scale: moments.max(least).max(f64::MIN_POSITIVE) }
+        Self { place: mean - EULER_GAMMA * moments, scale: moments.max(least).max(f64::MIN_POSITIVE) }
     }
 
     /// How far `figure` lies beyond, in scales of the tail.

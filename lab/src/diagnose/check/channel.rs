@@ -1,12 +1,12 @@
 //! Channels that are not there, and what cannot be seen without them.
 
-use super::note::Note;
-use super::view::View;
+use super::checked_trial::CheckedTrial;
+use super::ranked_finding::RankedFinding;
 use crate::recording::Recording;
 use crate::rig::Rig;
 
 /// What is missing over all trials.
-pub fn missing(rig: &Rig, views: &[View<'_>]) -> Vec<Note> {
+pub fn missing(rig: &Rig, views: &[CheckedTrial<'_>]) -> Vec<RankedFinding> {
     let lacks = |has: fn(&Recording) -> bool| views.iter().filter(|view| !has(view.recording)).collect::<Vec<_>>();
     let force = lacks(|recording| recording.force.is_some());
     let effort = lacks(|recording| recording.effort.is_some());
@@ -29,34 +29,34 @@ pub fn missing(rig: &Rig, views: &[View<'_>]) -> Vec<Note> {
     );
     let unused = velocity.map(|view| {
         let text = "The measured velocity is not used: speed is taken from the position, through the same filter as every other channel.";
-        Note::mild("velocity", format!("{}, velocity", view.name()), 0.0, text)
+        RankedFinding::mild("velocity", format!("{}, velocity", view.name()), 0.0, text)
     });
     [force, effort, unused].into_iter().flatten().collect()
 }
 
 fn absent(
-    lacking: &[&View<'_>],
+    lacking: &[&CheckedTrial<'_>],
     trials: usize,
     name: &'static str,
     is_known: bool,
     table: &str,
     lost: &str,
-) -> Option<Note> {
+) -> Option<RankedFinding> {
     match (lacking.first(), is_known) {
         (Some(_), _) if lacking.len() == trials => {
-            Some(Note::mild(name, "", 0.0, format!("No {name} was recorded: {lost}.")))
+            Some(RankedFinding::mild(name, "", 0.0, format!("No {name} was recorded: {lost}.")))
         }
         (Some(view), _) => {
             let text = format!(
                 "This trial has no {name} while others have: {lost} unless every trial has it. Diagnose such trials by themselves."
             );
-            Some(Note::mild(name, view.name(), 0.0, text))
+            Some(RankedFinding::mild(name, view.name(), 0.0, text))
         }
         (None, false) => {
             let text = format!(
                 "The {name} was recorded, but the rig file has no {table} table: {lost}. Add the table with nominal values."
             );
-            Some(Note::mild(name, "", 0.0, text))
+            Some(RankedFinding::mild(name, "", 0.0, text))
         }
         (None, true) => None,
     }

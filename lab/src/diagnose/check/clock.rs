@@ -1,30 +1,30 @@
 //! The time base: gaps, uneven sampling, rates that differ, drop-outs, too few or too slow rows.
 
-use super::note::Note;
-use super::view::{View, bounds, quantile, range};
-use super::words::{count, digits, quantity};
+use super::checked_trial::{CheckedTrial, bounds, quantile, range};
+use super::ranked_finding::RankedFinding;
+use super::wording::{count, digits, quantity};
 use crate::rig::Rig;
 
 /// Stretches that a trial is cut into to see its rate change.
-const PIECES: usize = 20;
+const RATE_SEGMENTS: usize = 20;
 
 /// Ratio of two periods that makes two rates.
-const OTHER: f64 = 1.5;
+const RATE_CHANGE_RATIO: f64 = 1.5;
 
 /// Deviation of nine in ten intervals, over the period, from which a clock is uneven.
-const UNEVEN: f64 = 0.25;
+const MAX_JITTER: f64 = 0.25;
 
 /// Ratio of periods of two trials that makes a difference.
-const APART: f64 = 1.05;
+const PERIOD_RATIO: f64 = 1.05;
 
 /// Rows of all trials below which little can be told, ...
-const FEW: usize = 200;
+const FEW_ROWS: usize = 200;
 
 /// ... and below which nothing can.
-const NONE: usize = 50;
+const TOO_FEW_ROWS: usize = 50;
 
 /// What is wrong with the clock of one trial.
-pub fn faults(view: &View<'_>) -> Vec<Note> {
+pub fn faults(view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
     let rates = two_rates(view);
     let uneven = if rates.is_none() { jitter(view) } else { None };
     // Rows of a slower stretch are no loss; the change of rate is told by itself.
@@ -32,7 +32,7 @@ pub fn faults(view: &View<'_>) -> Vec<Note> {
     [gaps, rates, uneven, dropouts(view)].into_iter().flatten().collect()
 }
 
-fn gaps(view: &View<'_>) -> Option<Note> {
+fn gaps(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let gaps = &view.raw.gaps;
     let longest = gaps.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let lost: f64 = gaps.iter().map(|gap| gap.1).sum();
@@ -47,16 +47,16 @@ fn gaps(view: &View<'_>) -> Option<Note> {
         digits(at),
         100.0 * share,
     );
-    Some(Note { grave, ..Note::mild("gaps", format!("{}, time", view.name()), share, text) })
+    Some(RankedFinding { grave, ..RankedFinding::mild("gaps", format!("{}, time", view.name()), share, text) })
 }
 
-fn intervals(view: &View<'_>) -> Vec<f64> {
+fn intervals(view: &CheckedTrial<'_>) -> Vec<f64> {
     view.recording.time.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
-fn two_rates(view: &View<'_>) -> Option<Note> {
+fn two_rates(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let steps = intervals(view);
-    let size = steps.len() / PIECES;
+    let size = steps.len() / RATE_SEGMENTS;
     if size < 4 {
         return None;
     }
@@ -64,7 +64,7 @@ fn two_rates(view: &View<'_>) -> Option<Note> {
     let usual = |piece: &[f64]| Some(0.5 * (quantile(piece.to_vec(), 0.25)? + quantile(piece.to_vec(), 0.75)?));
     let pieces: Vec<f64> = steps.chunks_exact(size).filter_map(usual).collect();
     let (short, long) = bounds(&pieces);
-    let change = pieces.windows(2).position(|pair| pair[1].max(pair[0]) > OTHER * pair[1].min(pair[0]))?;
+    let change = pieces.windows(2).position(|pair| pair[1].max(pair[0]) > RATE_CHANGE_RATIO * pair[1].min(pair[0]))?;
     let at = view.recording.time[(change + 1) * size];
     let left_out = match view.raw.gaps.len() {
         0 => "Quick effects are seen in the faster part only".to_owned(),
@@ -77,14 +77,14 @@ fn two_rates(view: &View<'_>) -> Option<Note> {
         quantity(short, "s"),
         quantity(long, "s"),
     );
-    Some(Note::mild("two rates", format!("{}, time", view.name()), long / short, text))
+    Some(RankedFinding::mild("two rates", format!("{}, time", view.name()), long / short, text))
 }
 
-fn jitter(view: &View<'_>) -> Option<Note> {
+fn jitter(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let period = view.recording.period();
     let near: Vec<f64> = intervals(view).into_iter().filter(|step| *step < 3.5 * period).collect();
     let spread = quantile(near.iter().map(|step| (step - period).abs()).collect(), 0.9)? / period;
-    if near.len() < 10 || spread < UNEVEN {
+    if near.len() < 10 || spread < MAX_JITTER {
         return None;
     }
     let low = quantile(near.clone(), 0.05)?;
@@ -95,10 +95,10 @@ fn jitter(view: &View<'_>) -> Option<Note> {
         quantity(low, "s"),
         quantity(high, "s"),
     );
-    Some(Note::mild("jitter", format!("{}, time", view.name()), spread, text))
+    Some(RankedFinding::mild("jitter", format!("{}, time", view.name()), spread, text))
 }
 
-fn dropouts(view: &View<'_>) -> Option<Note> {
+fn dropouts(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let first = view.raw.dropouts.first()?;
     let number = view.raw.dropouts.len();
     let share = number as f64 / view.recording.time.len() as f64;
@@ -108,14 +108,14 @@ fn dropouts(view: &View<'_>) -> Option<Note> {
         count(number, "drop-out"),
         digits(view.raw.origin + first),
     );
-    Some(Note {
+    Some(RankedFinding {
         grave: share > 0.02,
-        ..Note::mild("dropouts", format!("{}, {}", view.name(), leaping(view, *first)), number as f64, text)
+        ..RankedFinding::mild("dropouts", format!("{}, {}", view.name(), leaping(view, *first)), number as f64, text)
     })
 }
 
 /// The channel that leaps the most at `at` seconds, over its range.
-fn leaping(view: &View<'_>, at: f64) -> &'static str {
+fn leaping(view: &CheckedTrial<'_>, at: f64) -> &'static str {
     let recording = view.recording;
     let last = recording.time.len() - 1;
     let row = recording.time.partition_point(|time| time - view.raw.origin < at - 0.25 * view.raw.period).min(last);
@@ -127,11 +127,11 @@ fn leaping(view: &View<'_>, at: f64) -> &'static str {
 }
 
 /// What is wrong with the clocks of all trials together, and with the clock for this rig.
-pub fn together(rig: &Rig, views: &[View<'_>]) -> Vec<Note> {
+pub fn together(rig: &Rig, views: &[CheckedTrial<'_>]) -> Vec<RankedFinding> {
     [differing(views), too_few(views), too_slow(rig, views)].into_iter().flatten().collect()
 }
 
-fn differing(views: &[View<'_>]) -> Option<Note> {
+fn differing(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
     let slow = views.iter().max_by(|a, b| a.recording.period().total_cmp(&b.recording.period()))?;
     let fast = views.iter().min_by(|a, b| a.recording.period().total_cmp(&b.recording.period()))?;
     let (long, short) = (slow.recording.period(), fast.recording.period());
@@ -142,20 +142,22 @@ fn differing(views: &[View<'_>]) -> Option<Note> {
         quantity(short, "s"),
         fast.name(),
     );
-    (long > APART * short).then(|| Note::mild("rates", format!("{}, time", slow.name()), long / short, text))
+    (long > PERIOD_RATIO * short)
+        .then(|| RankedFinding::mild("rates", format!("{}, time", slow.name()), long / short, text))
 }
 
-fn too_few(views: &[View<'_>]) -> Option<Note> {
+fn too_few(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
     let rows: usize = views.iter().map(|view| view.recording.time.len()).sum();
     let text = format!(
         "Only {} in all. Few effects can be told from one another, and only strong ones; some hundreds of rows are needed, thousands are better: record \
          longer or faster.",
         count(rows, "row"),
     );
-    (rows < FEW).then(|| Note { grave: rows < NONE, ..Note::mild("rows", "", 0.0, text) })
+    (rows < FEW_ROWS)
+        .then(|| RankedFinding { grave: rows < TOO_FEW_ROWS, ..RankedFinding::mild("rows", "", 0.0, text) })
 }
 
-fn too_slow(rig: &Rig, views: &[View<'_>]) -> Option<Note> {
+fn too_slow(rig: &Rig, views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
     let period = views.first()?.raw.period;
     let force = views.iter().any(|view| view.force.is_some());
     let effort = views.iter().any(|view| view.effort.is_some());
@@ -173,5 +175,5 @@ fn too_slow(rig: &Rig, views: &[View<'_>]) -> Option<Note> {
         quantity(time, "s"),
         digits((4.0 / time).ceil()),
     );
-    (period > 0.5 * time).then(|| Note::mild("slow", "time", 0.0, text))
+    (period > 0.5 * time).then(|| RankedFinding::mild("slow", "time", 0.0, text))
 }

@@ -1,25 +1,25 @@
 //! The sign of the effort: where nothing else pushes, effort and motion go together.
 
-use super::note::Note;
-use super::view::{View, range};
-use super::words::digits;
+use super::checked_trial::{CheckedTrial, range};
+use super::ranked_finding::RankedFinding;
+use super::wording::digits;
 use crate::rig::{Coordinate, Rig};
 
 /// Correlation of what is left of effort and acceleration that speaks for itself.
-const CLEAR: f64 = 0.65;
+const MIN_CORRELATION: f64 = 0.65;
 
 /// Rows that are put together, in turn.
-const MEANS: [usize; 4] = [1, 4, 16, 64];
+const AVERAGED_ROWS: [usize; 4] = [1, 4, 16, 64];
 
 /// Fewest rows, or means of them.
-const ROWS: usize = 50;
+const MIN_ROWS: usize = 50;
 
 /// Effort that works against the acceleration it should cause.
-pub fn wrong_sign(rig: &Rig, view: &View<'_>) -> Option<Note> {
+pub fn wrong_sign(rig: &Rig, view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     rig.drive?;
     let effort = view.effort.as_ref()?;
     let rows = free(rig, view);
-    if rows.len() < ROWS {
+    if rows.len() < MIN_ROWS {
         return None;
     }
     let pick = |values: &[f64]| -> Vec<f64> { rows.iter().map(|row| values[*row]).collect() };
@@ -38,9 +38,9 @@ pub fn wrong_sign(rig: &Rig, view: &View<'_>) -> Option<Note> {
         known.extend([angle(f64::sin), angle(f64::cos)]);
     }
     // Noise of effort or acceleration hides the sign; means over longer stretches lay it bare.
-    let link = MEANS
+    let link = AVERAGED_ROWS
         .into_iter()
-        .filter(|size| rows.len() / size >= ROWS)
+        .filter(|size| rows.len() / size >= MIN_ROWS)
         .map(|size| {
             let known: Vec<Vec<f64>> = known.iter().map(|column| means(column, size)).collect();
             remaining(&known, &means(&effort, size), &means(&bend, size))
@@ -51,11 +51,12 @@ pub fn wrong_sign(rig: &Rig, view: &View<'_>) -> Option<Note> {
          when it drives the tool towards higher positions; multiply the effort column by -1 if it is not.",
         digits(link),
     );
-    (link < -CLEAR).then(|| Note::grave("effort sign", format!("{}, effort", view.name()), -link, text))
+    (link < -MIN_CORRELATION)
+        .then(|| RankedFinding::grave("effort sign", format!("{}, effort", view.name()), -link, text))
 }
 
 /// Rows in which nothing pushes on the tool but the drive.
-fn free(rig: &Rig, view: &View<'_>) -> Vec<usize> {
+fn free(rig: &Rig, view: &CheckedTrial<'_>) -> Vec<usize> {
     let touching = view.touching(rig);
     let zero = view.zero(rig).unwrap_or(0.0);
     let idle = |row: usize| view.force.as_ref().is_none_or(|force| (force[row] - zero).abs() < 5.0 * view.noise[2]);

@@ -1,17 +1,23 @@
 //! Which frequencies of a form that repeats are worth a trial: those at which the residual itself is loudest.
 
-use super::levenberg_marquardt::Data;
+use super::levenberg_marquardt::FitData;
 use crate::diagnose::model::{Model, index};
-use crate::effects::{Abscissa, Start, Tones, Weight, gate};
+use crate::effects::{Abscissa, FrequencySearch, Start, ToneWeight, gate};
 
 /// Frequencies that are tried in full.
-const TRIED: usize = 3;
+const MAX_FREQUENCIES: usize = 3;
 
 /// The loudest of `tones` in the whitened residual `base` of `model`.
-pub fn loudest(tones: &Tones, data: Data<'_>, model: &Model, values: &[f64], base: &[f64]) -> Vec<Start> {
+pub fn strongest(
+    tones: &FrequencySearch,
+    data: FitData<'_>,
+    model: &Model,
+    values: &[f64],
+    base: &[f64],
+) -> Vec<Start> {
     let on_effort = tones.abscissa == Abscissa::Position;
     let channel = if on_effort { &data.whitener.effort } else { &data.whitener.force };
-    let Some(floor) = channel else { return Vec::new() };
+    let Some(noise_model) = channel else { return Vec::new() };
     let offset = if on_effort { data.whitener.force_rows() } else { 0 };
     let mut heard = Vec::new();
     for &(first, apart, count) in &tones.frequencies {
@@ -21,53 +27,58 @@ pub fn loudest(tones: &Tones, data: Data<'_>, model: &Model, values: &[f64], bas
         for (trial, both) in data.trials.iter().enumerate() {
             // Along time each trial has a phase of its own, along the way all share one.
             if tones.abscissa == Abscissa::Time {
-                settle(&mut loud, &mut sums);
+                accumulate_power(&mut loud, &mut sums);
             }
-            let track = both.track(on_effort);
-            for &at in &floor.rows[trial] {
+            let filtered = both.filtered(on_effort);
+            for &at in &noise_model.rows[trial] {
                 let value = base[row];
                 row += 1;
-                let weight = weigh(tones.weight, model, values, track.position[at], track.velocity[at] * track.blur)
-                    / floor.deviation[trial][at];
+                let weight = tone_weight(
+                    tones.weight,
+                    model,
+                    values,
+                    filtered.position[at],
+                    filtered.velocity[at] * filtered.filter_width,
+                ) / noise_model.deviation[trial][at];
                 if weight == 0.0 || value == 0.0 {
                     continue;
                 }
                 let along = match tones.abscissa {
-                    Abscissa::Time => at as f64 * track.step,
-                    Abscissa::Position => track.position[at],
+                    Abscissa::Time => at as f64 * filtered.step,
+                    Abscissa::Position => filtered.position[at],
                 };
-                collect(&mut sums, first, apart, along, weight, value);
+                correlate(&mut sums, first, apart, along, weight, value);
             }
         }
-        settle(&mut loud, &mut sums);
+        accumulate_power(&mut loud, &mut sums);
         let loud = loud.iter().enumerate().map(|(at, loud)| (*loud, first + apart * at as f64));
         heard.extend(peaks(&loud.collect::<Vec<_>>()));
     }
     heard.sort_by(|a, b| b.0.total_cmp(&a.0));
-    heard.truncate(TRIED);
+    heard.truncate(MAX_FREQUENCIES);
     heard.iter().map(|(_, frequency)| tones.start(*frequency)).collect()
 }
 
 /// Adds what the sums heard to `loud` and empties them.
-fn settle(loud: &mut [f64], sums: &mut [(f64, f64, f64)]) {
+fn accumulate_power(loud: &mut [f64], sums: &mut [(f64, f64, f64)]) {
     for (loud, (sine, cosine, weight)) in loud.iter_mut().zip(sums) {
         *loud += (*sine * *sine + *cosine * *cosine) / weight.max(f64::MIN_POSITIVE);
         (*sine, *cosine, *weight) = (0.0, 0.0, 0.0);
     }
 }
 
-fn weigh(weight: Weight, model: &Model, values: &[f64], position: f64, width: f64) -> f64 {
+fn tone_weight(weight: ToneWeight, model: &Model, values: &[f64], position: f64, width: f64) -> f64 {
     let depth = position - values[index::SURFACE];
     let inside = if model.contact == Some(true) { 1.0 } else { gate(depth, width.abs()) };
     match weight {
-        Weight::Even => 1.0,
-        Weight::Inside => inside,
-        Weight::Depth => inside * depth,
+        ToneWeight::Even => 1.0,
+        ToneWeight::Inside => inside,
+        ToneWeight::Depth => inside * depth,
     }
 }
 
 /// Adds one row to the sums of all frequencies, each turned on from the last.
-fn collect(sums: &mut [(f64, f64, f64)], first: f64, apart: f64, along: f64, weight: f64, value: f64) {
+fn correlate(sums: &mut [(f64, f64, f64)], first: f64, apart: f64, along: f64, weight: f64, value: f64) {
     let (mut sine, mut cosine) = (std::f64::consts::TAU * first * along).sin_cos();
     let (turn_sine, turn_cosine) = (std::f64::consts::TAU * apart * along).sin_cos();
     let (product, square) = (weight * value, weight * weight);

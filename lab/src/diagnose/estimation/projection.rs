@@ -2,15 +2,15 @@
 
 use nalgebra::DVector;
 
-use super::levenberg_marquardt::{self, Anchor, Axis, Data};
+use super::levenberg_marquardt::{self, FitData, GaussianPrior, ParameterBounds};
 use super::periodogram;
 use crate::diagnose::linalg::{dot, energy, remove, solve};
 use crate::diagnose::model::{Channels, Model, Term};
-use crate::effects::{self, Scene, Start, linear};
+use crate::effects::{self, ExcitationStats, Start, linear};
 
 /// The best that one effect can do.
 #[derive(Debug, Clone)]
-pub struct Score {
+pub struct EffectScore {
     /// Effect and form.
     pub term: Term,
     /// Whitened energy that it takes away.
@@ -20,8 +20,8 @@ pub struct Score {
 }
 
 /// What a model leaves, freed of what its own values could still take.
-pub struct Remainder<'a> {
-    data: Data<'a>,
+pub struct ProjectedResidual<'a> {
+    data: FitData<'a>,
     model: &'a Model,
     values: &'a [f64],
     base: Vec<f64>,
@@ -34,19 +34,19 @@ pub struct Remainder<'a> {
 }
 
 /// Share of a direction that must not be the model's own, for it to be told from it.
-const DISTINCT: f64 = 1e-5;
+const MIN_ORTHOGONAL_FRACTION: f64 = 1e-5;
 
-impl<'a> Remainder<'a> {
+impl<'a> ProjectedResidual<'a> {
     /// Of `model` at `values`.
     #[must_use]
-    pub fn of(data: Data<'a>, model: &'a Model, values: &'a [f64], scene: &Scene) -> Self {
-        let axes = levenberg_marquardt::axes(model, values, scene);
+    pub fn of(data: FitData<'a>, model: &'a Model, values: &'a [f64], excitation: &ExcitationStats) -> Self {
+        let axes = levenberg_marquardt::parameter_bounds(model, values, excitation);
         let base = data.residual(model, values, Channels::BOTH);
         let columns = levenberg_marquardt::jacobian(&data, model, values, &axes, &base);
-        let open: Vec<_> = columns.into_iter().filter(|(at, _)| is_open(values[*at], &axes[*at])).collect();
+        let open: Vec<_> = columns.into_iter().filter(|(at, _)| is_inside_bounds(values[*at], &axes[*at])).collect();
         let mut shift = vec![0.0; values.len()];
-        let anchor = Anchor::of(model, values, &axes, 0.0);
-        if let Some(parts) = step(&open, &base, &anchor) {
+        let anchor = GaussianPrior::of(model, values, &axes, 0.0);
+        if let Some(parts) = gauss_newton_step(&open, &base, &anchor) {
             open.iter().zip(parts.iter()).for_each(|((at, _), part)| shift[*at] = -part);
         }
         let mut tangent: Vec<Vec<f64>> = Vec::new();
@@ -74,28 +74,28 @@ impl<'a> Remainder<'a> {
 
     /// A direction without the model's own; `None` where nothing of it is left.
     #[must_use]
-    pub fn own(&self, mut direction: Vec<f64>) -> Option<Vec<f64>> {
+    pub fn orthogonal(&self, mut direction: Vec<f64>) -> Option<Vec<f64>> {
         let before = dot(&direction, &direction);
         self.tangent.iter().for_each(|unit| remove(&mut direction, unit));
-        (dot(&direction, &direction) > DISTINCT * before && before > 0.0).then_some(direction)
+        (dot(&direction, &direction) > MIN_ORTHOGONAL_FRACTION * before && before > 0.0).then_some(direction)
     }
 
     /// The best that each effect can do alone, over its forms and starts; of those that `asked` lets through.
     #[must_use]
-    pub fn scores(&self, scene: &Scene, asked: &dyn Fn(&Term) -> bool) -> Vec<Score> {
+    pub fn scores(&self, excitation: &ExcitationStats, asked: &dyn Fn(&Term) -> bool) -> Vec<EffectScore> {
         let mut scores = Vec::new();
         for effect in effects::ALL {
-            if !self.model.takes(effect.card().place) || self.model.holds(effect) {
+            if !self.model.takes(effect.spec().place) || self.model.holds(effect) {
                 continue;
             }
-            for form in 0..effect.card().forms.len() {
+            for form in 0..effect.spec().forms.len() {
                 let term = Term { effect, form };
                 if !asked(&term) {
                     continue;
                 }
-                let mut starts = effect.starts(form, scene);
-                if let Some(tones) = effect.tones(form, scene) {
-                    starts.extend(periodogram::loudest(&tones, self.data, self.model, self.values, &self.base));
+                let mut starts = effect.starts(form, excitation);
+                if let Some(tones) = effect.frequency_search(form, excitation) {
+                    starts.extend(periodogram::strongest(&tones, self.data, self.model, self.values, &self.base));
                 }
                 let tried = starts.iter().filter_map(|start| self.score(term, start));
                 scores.extend(tried.max_by(|a, b| a.gain.total_cmp(&b.gain)));
@@ -106,13 +106,13 @@ impl<'a> Remainder<'a> {
 
     /// `score` with the values that it is not linear in looked at more closely: between its own start and those beside it.
     #[must_use]
-    pub fn polished(&self, score: &Score, scene: &Scene) -> Score {
+    pub fn refine_start(&self, score: &EffectScore, excitation: &ExcitationStats) -> EffectScore {
         let (term, form) = (score.term, score.term.form);
-        let starts = term.effect.starts(form, scene);
+        let starts = term.effect.starts(form, excitation);
         let mut best = score.clone();
         let own = &score.values[..term.parameters().len()];
         for (at, parameter) in term.parameters().iter().enumerate().filter(|(_, parameter)| !parameter.fixed) {
-            let sizes = starts.first().map_or(&[][..], |start| &start.sizes);
+            let sizes = starts.first().map_or(&[][..], |start| &start.linear_parameters);
             let mut grid: Vec<f64> = starts.iter().map(|start| start.values[at]).collect();
             grid.sort_unstable_by(f64::total_cmp);
             grid.dedup();
@@ -130,7 +130,7 @@ impl<'a> Remainder<'a> {
                         values[*size] = starts[0].values[*size];
                     },
                 );
-                let tried = self.score(term, &Start { values, sizes: sizes.to_vec() });
+                let tried = self.score(term, &Start { values, linear_parameters: sizes.to_vec() });
                 if let Some(tried) = tried.filter(|tried| tried.gain > best.gain) {
                     best = tried;
                 }
@@ -140,28 +140,29 @@ impl<'a> Remainder<'a> {
     }
 
     /// What `term` can do from `start`.
-    fn score(&self, term: Term, start: &Start) -> Option<Score> {
+    fn score(&self, term: Term, start: &Start) -> Option<EffectScore> {
         let model = self.model.with(term);
-        let channels = self.model.reach(term.effect.card().place);
+        let channels = self.model.affected_channels(term.effect.spec().place);
         let split = self.data.whitener.force_rows();
         let change = |own: &[f64]| {
             let values: Vec<f64> = self.values.iter().chain(own).copied().collect();
             let there = self.data.residual(&model, &values, channels);
             let counts = |row: usize| if row < split { channels.force } else { channels.effort };
             let pairs = self.base.iter().zip(there).enumerate();
-            self.own(pairs.map(|(row, (base, there))| if counts(row) { base - there } else { 0.0 }).collect())
+            self.orthogonal(pairs.map(|(row, (base, there))| if counts(row) { base - there } else { 0.0 }).collect())
         };
         let trials = model.trials();
         let parameters = term.all_parameters(trials);
         let start_values = term.spread(&start.values, trials);
-        if start.sizes.is_empty() {
+        if start.linear_parameters.is_empty() {
             let direction = change(&start_values)?;
             // A point of a grid: the true size is near the one tried, or another point is nearer.
             let part = (dot(&direction, &self.free) / dot(&direction, &direction)).clamp(0.0, 2.5);
             let gain = part * (2.0 * dot(&direction, &self.free) - part * dot(&direction, &direction));
-            return Some(Score { term, gain, values: start_values });
+            return Some(EffectScore { term, gain, values: start_values });
         }
-        let is_size = |at: &usize| start.sizes.iter().any(|size| parameters[*size].name == parameters[*at].name);
+        let is_size =
+            |at: &usize| start.linear_parameters.iter().any(|size| parameters[*size].name == parameters[*at].name);
         let sizes: Vec<usize> = (0..parameters.len()).filter(is_size).collect();
         let alone = |size: usize| {
             let mut own = start_values.clone();
@@ -187,18 +188,18 @@ impl<'a> Remainder<'a> {
                 .iter()
                 .zip(parts.iter())
                 .for_each(|((size, _), part)| values[*size] = part * start_values[*size]);
-            return Some(Score { term, gain, values });
+            return Some(EffectScore { term, gain, values });
         }
     }
 }
 
-fn is_open(value: f64, axis: &Axis) -> bool {
+fn is_inside_bounds(value: f64, axis: &ParameterBounds) -> bool {
     value > axis.low && value < axis.high
 }
 
 /// The step of Gauss and Newton to the least of `base` along `columns`, of which an anchor holds some where they are; turned
 /// round.
-fn step(columns: &[(usize, Vec<f64>)], base: &[f64], anchor: &Anchor) -> Option<DVector<f64>> {
+fn gauss_newton_step(columns: &[(usize, Vec<f64>)], base: &[f64], anchor: &GaussianPrior) -> Option<DVector<f64>> {
     let held: Vec<(usize, Vec<f64>)> = columns
         .iter()
         .enumerate()

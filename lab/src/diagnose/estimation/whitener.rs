@@ -7,18 +7,18 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::diagnose::linalg::{dot, energy};
-use crate::diagnose::model::Rest;
-use crate::diagnose::signals::filtered_trial::{Track, Trial};
+use crate::diagnose::model::Residual;
+use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
 
 /// Order of the predictor.
-const ORDER: usize = 8;
+const AR_ORDER: usize = 8;
 
 /// Power over the noise's up to which a residual tells its own memory.
-const OWN: f64 = 2.0;
+const OWN_AUTOCORRELATION_POWER_RATIO: f64 = 2.0;
 
 /// The floor of one channel over all trials.
 #[derive(Debug, Clone)]
-pub struct Floor {
+pub struct NoiseModel {
     /// Deviation of what noise leaves, row by row, a vector a trial.
     pub deviation: Vec<Vec<f64>>,
     /// Weights of the rows before in the predictor error filter; the row itself counts one.
@@ -28,21 +28,21 @@ pub struct Floor {
     /// Rows of each trial that count.
     pub rows: Vec<Vec<usize>>,
     /// Covariance of noise alone over the first lags, in squares of its deviation.
-    noise: [f64; ORDER + 1],
+    noise: [f64; AR_ORDER + 1],
 }
 
 /// The floors of both channels and the rows that count.
 #[derive(Debug, Clone)]
 pub struct Whitener {
     /// Of the force reading.
-    pub force: Option<Floor>,
+    pub force: Option<NoiseModel>,
     /// Of the drive's balance.
-    pub effort: Option<Floor>,
+    pub effort: Option<NoiseModel>,
 }
 
 /// Rows of both channels, one after the other: force of all trials, then effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Row {
+pub struct RowOrigin {
     /// Trial.
     pub trial: usize,
     /// Row in it.
@@ -51,39 +51,44 @@ pub struct Row {
     pub effort: bool,
 }
 
-impl Floor {
+impl NoiseModel {
     /// A floor that is the same everywhere and has no memory.
     #[must_use]
-    pub fn even(tracks: &[&Track], deviation: f64) -> Self {
-        let deviation = tracks.iter().map(|track| vec![deviation; track.len()]).collect();
-        Self { deviation, predictor: Vec::new(), scale: 1.0, rows: rows(tracks), noise: [0.0; ORDER + 1] }
+    pub fn even(filtered_trials: &[&FilteredTrial], deviation: f64) -> Self {
+        let deviation = filtered_trials.iter().map(|filtered| vec![deviation; filtered.len()]).collect();
+        Self { deviation, predictor: Vec::new(), scale: 1.0, rows: rows(filtered_trials), noise: [0.0; AR_ORDER + 1] }
     }
 
     /// The floor that `samples`, residuals of noise alone, leave: a vector of trials each.
     #[must_use]
-    pub fn of(tracks: &[&Track], samples: &[Vec<Vec<f64>>]) -> Self {
+    pub fn of(filtered_trials: &[&FilteredTrial], samples: &[Vec<Vec<f64>>]) -> Self {
         let mut deviation: Vec<Vec<f64>> =
-            (0..tracks.len()).map(|trial| spread(tracks[trial], samples, trial)).collect();
+            (0..filtered_trials.len()).map(|trial| local_deviation(filtered_trials[trial], samples, trial)).collect();
         // No moment is known better than a fraction of the rest of them.
-        let mut all: Vec<f64> = deviation.iter().zip(tracks).flat_map(|(d, t)| seen(d, t)).collect();
+        let mut all: Vec<f64> = deviation.iter().zip(filtered_trials).flat_map(|(d, t)| seen(d, t)).collect();
         // A stretch without any noise at all, a sensor that is off, does not tell what is typical.
         all.retain(|value| *value > 0.0);
         all.sort_unstable_by(f64::total_cmp);
         let typical = all.get(all.len() / 2).copied().unwrap_or(1.0);
         let least = (0.3 * typical).max(f64::MIN_POSITIVE);
         deviation.iter_mut().flatten().for_each(|value| *value = if *value > least { *value } else { least });
-        let mut floor =
-            Self { deviation, predictor: Vec::new(), scale: 1.0, rows: rows(tracks), noise: [0.0; ORDER + 1] };
+        let mut noise_model = Self {
+            deviation,
+            predictor: Vec::new(),
+            scale: 1.0,
+            rows: rows(filtered_trials),
+            noise: [0.0; AR_ORDER + 1],
+        };
         for sample in samples {
-            let own = floor.covariance(sample.iter());
-            floor.noise.iter_mut().zip(own).for_each(|(sum, own)| *sum += own / samples.len() as f64);
+            let own = noise_model.covariance(sample.iter());
+            noise_model.noise.iter_mut().zip(own).for_each(|(sum, own)| *sum += own / samples.len() as f64);
         }
-        floor
+        noise_model
     }
 
     /// Covariance over the first lags of residuals, a vector a trial, in squares of the floor's deviation.
-    fn covariance<'a>(&self, residuals: impl Iterator<Item = &'a Vec<f64>>) -> [f64; ORDER + 1] {
-        let mut covariance = [0.0; ORDER + 1];
+    fn covariance<'a>(&self, residuals: impl Iterator<Item = &'a Vec<f64>>) -> [f64; AR_ORDER + 1] {
+        let mut covariance = [0.0; AR_ORDER + 1];
         let mut count = 0.0f64;
         for (trial, values) in residuals.enumerate() {
             let scaled: Vec<f64> = values.iter().zip(&self.deviation[trial]).map(|(v, d)| v / d).collect();
@@ -102,37 +107,43 @@ impl Floor {
     /// A residual that is about as large as noise tells its own memory, and so is worth what it is worth whatever its
     /// colour. One that is far larger is no noise: what is left out would pass for memory and be taken off. There the
     /// memory is that of the twins.
-    fn learn<'a>(&mut self, residuals: impl Iterator<Item = &'a Vec<f64>>) {
+    fn fit_ar<'a>(&mut self, residuals: impl Iterator<Item = &'a Vec<f64>>) {
         let own = self.covariance(residuals);
         if own[0] <= 0.0 || !own[0].is_finite() {
             return;
         }
-        let share = if self.noise[0] > 0.0 { (OWN * self.noise[0] / own[0]).min(1.0).powi(2) } else { 1.0 };
+        let share = if self.noise[0] > 0.0 {
+            (OWN_AUTOCORRELATION_POWER_RATIO * self.noise[0] / own[0]).min(1.0).powi(2)
+        } else {
+            1.0
+        };
         let mix = |lag: usize| {
             let noise = if self.noise[0] > 0.0 { self.noise[lag] / self.noise[0] } else { 0.0 };
             share * own[lag] / own[0] + (1.0 - share) * noise
         };
-        let covariance: [f64; ORDER + 1] = std::array::from_fn(mix);
+        let covariance: [f64; AR_ORDER + 1] = std::array::from_fn(mix);
         // A thousandth of white noise beside: no spectrum is known to be empty anywhere.
-        let matrix = DMatrix::from_fn(ORDER, ORDER, |i, j| covariance[i.abs_diff(j)] + if i == j { 1e-3 } else { 0.0 });
-        let right = DVector::from_fn(ORDER, |i, _| covariance[i + 1]);
+        let matrix =
+            DMatrix::from_fn(AR_ORDER, AR_ORDER, |i, j| covariance[i.abs_diff(j)] + if i == j { 1e-3 } else { 0.0 });
+        let right = DVector::from_fn(AR_ORDER, |i, _| covariance[i + 1]);
         let Some(solved) = matrix.cholesky().map(|factors| factors.solve(&right)) else { return };
         self.predictor = solved.iter().copied().collect();
         let weight = |k: usize| if k == 0 { 1.0 } else { -self.predictor[k - 1] };
         let mut energy = 0.0;
-        for i in 0..=ORDER {
-            for j in 0..=ORDER {
+        for i in 0..=AR_ORDER {
+            for j in 0..=AR_ORDER {
                 energy += weight(i) * weight(j) * covariance[i.abs_diff(j)];
             }
         }
         // In the units of the smaller of the two: a residual beyond noise is to count for more than noise.
-        let size = if self.noise[0] > 0.0 { own[0].min(OWN * self.noise[0]) } else { own[0] };
+        let size =
+            if self.noise[0] > 0.0 { own[0].min(OWN_AUTOCORRELATION_POWER_RATIO * self.noise[0]) } else { own[0] };
         self.scale = (energy * size).max(f64::MIN_POSITIVE).sqrt();
     }
 
     /// Whitened `values` of a trial, on those rows that count: before each of them all rows are there that the predictor
     /// asks for.
-    fn white<'a>(&'a self, trial: usize, values: &[f64]) -> impl Iterator<Item = f64> + use<'a> {
+    fn whiten<'a>(&'a self, trial: usize, values: &[f64]) -> impl Iterator<Item = f64> + use<'a> {
         let scaled: Vec<f64> = values.iter().zip(&self.deviation[trial]).map(|(v, d)| v / d).collect();
         let backwards: Vec<f64> = self.predictor.iter().rev().copied().collect();
         let ahead = move |at: &usize| {
@@ -144,8 +155,8 @@ impl Floor {
 }
 
 /// Deviation over the samples and a few rows either side.
-fn spread(track: &Track, samples: &[Vec<Vec<f64>>], trial: usize) -> Vec<f64> {
-    let rows = track.len();
+fn local_deviation(filtered: &FilteredTrial, samples: &[Vec<Vec<f64>>], trial: usize) -> Vec<f64> {
+    let rows = filtered.len();
     let mut energy = vec![0.0; rows + 1];
     for at in 0..rows {
         let square: f64 = samples.iter().map(|sample| sample[trial][at] * sample[trial][at]).sum();
@@ -159,40 +170,40 @@ fn spread(track: &Track, samples: &[Vec<Vec<f64>>], trial: usize) -> Vec<f64> {
         .collect()
 }
 
-fn seen(values: &[f64], track: &Track) -> Vec<f64> {
-    values.iter().zip(&track.seen).filter(|(_, seen)| **seen).map(|(value, _)| *value).collect()
+fn seen(values: &[f64], filtered: &FilteredTrial) -> Vec<f64> {
+    values.iter().zip(&filtered.valid).filter(|(_, valid)| **valid).map(|(value, _)| *value).collect()
 }
 
 /// Rows that were seen whole together with those before them that the predictor asks for.
-fn rows(tracks: &[&Track]) -> Vec<Vec<usize>> {
-    let whole = |track: &&Track| {
-        (ORDER..track.len()).filter(|at| track.seen[at - ORDER..=*at].iter().all(|seen| *seen)).collect()
+fn rows(filtered_trials: &[&FilteredTrial]) -> Vec<Vec<usize>> {
+    let whole = |filtered: &&FilteredTrial| {
+        (AR_ORDER..filtered.len()).filter(|at| filtered.valid[at - AR_ORDER..=*at].iter().all(|valid| *valid)).collect()
     };
-    tracks.iter().map(whole).collect()
+    filtered_trials.iter().map(whole).collect()
 }
 
 impl Whitener {
-    /// The same floors, the memory told by `rests`: that of a recording by its own residual, that of a twin by its own.
+    /// The same floors, the memory told by `residuals`: that of a recording by its own residual, that of a twin by its own.
     #[must_use]
-    pub fn learnt(&self, rests: &[Rest]) -> Self {
+    pub fn with_fitted_ar(&self, residuals: &[Residual]) -> Self {
         let mut fresh = self.clone();
-        if let Some(floor) = &mut fresh.force {
-            floor.learn(rests.iter().map(|rest| &rest.force));
+        if let Some(noise_model) = &mut fresh.force {
+            noise_model.fit_ar(residuals.iter().map(|residual| &residual.force));
         }
-        if let Some(floor) = &mut fresh.effort {
-            floor.learn(rests.iter().map(|rest| &rest.effort));
+        if let Some(noise_model) = &mut fresh.effort {
+            noise_model.fit_ar(residuals.iter().map(|residual| &residual.effort));
         }
         fresh
     }
 
     /// The same, no moment's floor half as much again above that of `before`.
     #[must_use]
-    pub fn no_worse_than(mut self, before: &Self) -> Self {
+    pub fn limited_by(mut self, before: &Self) -> Self {
         let channels = [(&mut self.force, &before.force), (&mut self.effort, &before.effort)];
-        for (floor, before) in
-            channels.into_iter().filter_map(|(floor, before)| Some((floor.as_mut()?, before.as_ref()?)))
+        for (noise_model, before) in
+            channels.into_iter().filter_map(|(noise_model, before)| Some((noise_model.as_mut()?, before.as_ref()?)))
         {
-            let pairs = floor.deviation.iter_mut().flatten().zip(before.deviation.iter().flatten());
+            let pairs = noise_model.deviation.iter_mut().flatten().zip(before.deviation.iter().flatten());
             pairs.for_each(|(deviation, before)| *deviation = deviation.min(1.5 * before));
         }
         self
@@ -200,22 +211,26 @@ impl Whitener {
 
     /// The same floors without their memory.
     #[must_use]
-    pub fn forgetful(&self) -> Self {
-        let plain = |floor: &Option<Floor>| {
-            floor.as_ref().map(|floor| Floor { predictor: Vec::new(), scale: 1.0, ..floor.clone() })
+    pub fn without_autocorrelation(&self) -> Self {
+        let plain = |noise_model: &Option<NoiseModel>| {
+            noise_model.as_ref().map(|noise_model| NoiseModel {
+                predictor: Vec::new(),
+                scale: 1.0,
+                ..noise_model.clone()
+            })
         };
         Self { force: plain(&self.force), effort: plain(&self.effort) }
     }
 
     /// Where each whitened value comes from.
     #[must_use]
-    pub fn origins(&self) -> Vec<Row> {
-        let channel = |effort: bool, floor: &Option<Floor>| {
-            let trials: Vec<Vec<usize>> = floor.iter().flat_map(|floor| floor.rows.clone()).collect();
+    pub fn origins(&self) -> Vec<RowOrigin> {
+        let channel = |effort: bool, noise_model: &Option<NoiseModel>| {
+            let trials: Vec<Vec<usize>> = noise_model.iter().flat_map(|noise_model| noise_model.rows.clone()).collect();
             trials
                 .into_iter()
                 .enumerate()
-                .flat_map(move |(trial, rows)| rows.into_iter().map(move |row| Row { trial, row, effort }))
+                .flat_map(move |(trial, rows)| rows.into_iter().map(move |row| RowOrigin { trial, row, effort }))
         };
         channel(false, &self.force).chain(channel(true, &self.effort)).collect()
     }
@@ -223,7 +238,7 @@ impl Whitener {
     /// Rows of the force channel, which come first.
     #[must_use]
     pub fn force_rows(&self) -> usize {
-        self.force.iter().flat_map(|floor| &floor.rows).map(Vec::len).sum()
+        self.force.iter().flat_map(|noise_model| &noise_model.rows).map(Vec::len).sum()
     }
 
     /// Mean squares of whitened residuals of all trials, of force and of effort.
@@ -235,23 +250,23 @@ impl Whitener {
 
     /// The whitened residuals of all trials; a channel that was not asked for is zero.
     #[must_use]
-    pub fn white(&self, rests: &[Rest]) -> Vec<f64> {
+    pub fn whiten(&self, residuals: &[Residual]) -> Vec<f64> {
         let mut out = Vec::new();
-        let mut channel = |floor: &Floor, pick: &dyn Fn(&Rest) -> &Vec<f64>| {
-            for (trial, rows) in floor.rows.iter().enumerate() {
-                let values = pick(&rests[trial]);
+        let mut channel = |noise_model: &NoiseModel, pick: &dyn Fn(&Residual) -> &Vec<f64>| {
+            for (trial, rows) in noise_model.rows.iter().enumerate() {
+                let values = pick(&residuals[trial]);
                 if values.is_empty() {
                     out.extend(std::iter::repeat_n(0.0, rows.len()));
                 } else {
-                    out.extend(floor.white(trial, values));
+                    out.extend(noise_model.whiten(trial, values));
                 }
             }
         };
-        if let Some(floor) = &self.force {
-            channel(floor, &|rest| &rest.force);
+        if let Some(noise_model) = &self.force {
+            channel(noise_model, &|residual| &residual.force);
         }
-        if let Some(floor) = &self.effort {
-            channel(floor, &|rest| &rest.effort);
+        if let Some(noise_model) = &self.effort {
+            channel(noise_model, &|residual| &residual.effort);
         }
         out
     }
@@ -259,6 +274,6 @@ impl Whitener {
 
 /// The tracks of a channel.
 #[must_use]
-pub fn tracks(trials: &[Trial], effort: bool) -> Vec<&Track> {
-    trials.iter().map(|trial| trial.track(effort)).collect()
+pub fn filtered_trials(trials: &[AnalysisTrial], effort: bool) -> Vec<&FilteredTrial> {
+    trials.iter().map(|trial| trial.filtered(effort)).collect()
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::diagnose::model::Model;
-use crate::diagnose::signals::filtered_trial::Track;
+use crate::diagnose::signals::filtered_trial::FilteredTrial;
 
 /// Phase of contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -24,24 +24,24 @@ pub enum Phase {
 }
 
 /// Widths of the smoothing filter that an onset and a release last.
-const EDGE: f64 = 8.0;
+const TRANSITION_WIDTHS: f64 = 8.0;
 
 /// Widths by which they begin before the surface is reached: the filter sees the touch coming.
-const BEFORE: f64 = 3.0;
+const ANTICIPATION_WIDTHS: f64 = 3.0;
 
 /// Speed, over that of the motion in contact, below which the tool is held.
-const HELD: f64 = 0.1;
+const HOLD_SPEED_FRACTION: f64 = 0.1;
 
-/// The phase of each row of `track`, for trial `trial` of `model` with `values`; `speed` is the usual one in contact.
+/// The phase of each row of `filtered`, for trial `trial` of `model` with `values`; `speed` is the usual one in contact.
 #[must_use]
-pub fn phases(model: &Model, values: &[f64], trial: usize, track: &Track, speed: f64) -> Vec<Phase> {
+pub fn phases(model: &Model, values: &[f64], trial: usize, filtered: &FilteredTrial, speed: f64) -> Vec<Phase> {
     let inside = |at: usize| match model.contact {
         None => false,
-        Some(bilateral) => bilateral || track.position[at] > model.surface(values, trial),
+        Some(bilateral) => bilateral || filtered.position[at] > model.surface(values, trial),
     };
     let moving = |at: usize| {
-        let velocity = track.velocity[at];
-        if velocity.abs() < HELD * speed {
+        let velocity = filtered.velocity[at];
+        if velocity.abs() < HOLD_SPEED_FRACTION * speed {
             Phase::Hold
         } else if velocity > 0.0 {
             Phase::Loading
@@ -49,13 +49,17 @@ pub fn phases(model: &Model, values: &[f64], trial: usize, track: &Track, speed:
             Phase::Unloading
         }
     };
-    let mut phases: Vec<Phase> = (0..track.len()).map(|at| if inside(at) { moving(at) } else { Phase::Free }).collect();
-    let (early, late) = ((BEFORE * track.blur / track.step) as usize, (EDGE * track.blur / track.step).ceil() as usize);
-    let edges: Vec<usize> = (1..track.len()).filter(|&at| inside(at) != inside(at - 1)).collect();
+    let mut phases: Vec<Phase> =
+        (0..filtered.len()).map(|at| if inside(at) { moving(at) } else { Phase::Free }).collect();
+    let (early, late) = (
+        (ANTICIPATION_WIDTHS * filtered.filter_width / filtered.step) as usize,
+        (TRANSITION_WIDTHS * filtered.filter_width / filtered.step).ceil() as usize,
+    );
+    let edges: Vec<usize> = (1..filtered.len()).filter(|&at| inside(at) != inside(at - 1)).collect();
     for (nth, &at) in edges.iter().enumerate() {
         let begins = inside(at);
         // An edge ends half-way to the next one: a touch shorter than itself is half onset, half release.
-        let next = edges.get(nth + 1).map_or(track.len(), |next| (at + next).div_ceil(2));
+        let next = edges.get(nth + 1).map_or(filtered.len(), |next| (at + next).div_ceil(2));
         let last = if nth == 0 { 0 } else { (edges[nth - 1] + at) / 2 };
         let (from, to) =
             if begins { (at.saturating_sub(early), at + late) } else { (at.saturating_sub(late), at + late) };
@@ -83,7 +87,7 @@ pub const ALL: [Phase; 6] = [Phase::Free, Phase::Onset, Phase::Loading, Phase::H
 
 /// Depth of each row, relative to the fitted surface; the position where there is no contact.
 #[must_use]
-pub fn depths(model: &Model, values: &[f64], trial: usize, track: &Track) -> Vec<f64> {
+pub fn depths(model: &Model, values: &[f64], trial: usize, filtered: &FilteredTrial) -> Vec<f64> {
     let surface = if model.contact.is_some() { model.surface(values, trial) } else { 0.0 };
-    track.position.iter().map(|position| position - surface).collect()
+    filtered.position.iter().map(|position| position - surface).collect()
 }

@@ -2,7 +2,7 @@
 
 /// What the model leaves of one trial.
 #[derive(Debug, Clone, Default)]
-pub struct Rest {
+pub struct Residual {
     /// Measured minus predicted force.
     pub force: Vec<f64>,
     /// What is left of the drive's balance.

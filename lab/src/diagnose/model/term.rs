@@ -15,7 +15,7 @@ impl Term {
     /// Its parameters.
     #[must_use]
     pub fn parameters(&self) -> &'static [Parameter] {
-        self.effect.card().forms[self.form].parameters
+        self.effect.spec().forms[self.form].parameters
     }
 
     /// See [`crate::effects::Effect::refines`].
@@ -71,12 +71,12 @@ impl Term {
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &'static str {
-        self.effect.card().name
+        self.effect.spec().name
     }
 }
 
 impl std::fmt::Debug for Term {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}/{}", self.name(), self.effect.card().forms[self.form].name)
+        write!(f, "{}/{}", self.name(), self.effect.spec().forms[self.form].name)
     }
 }

@@ -9,7 +9,7 @@ pub use crate::diagnose::selection::verdict::Verdict;
 
 /// The diagnosis, in the layout of `palpate.diagnosis/1`.
 #[derive(Debug, Clone, Serialize)]
-pub struct Answer {
+pub struct Diagnosis {
     /// "palpate.diagnosis/1".
     pub schema: &'static str,
     /// What came out.
@@ -19,13 +19,14 @@ pub struct Answer {
     /// The physics left out, in order of evidence.
     pub physics: Vec<Physics>,
     /// What this data cannot tell from the answer.
-    pub rivals: Vec<Rival>,
+    #[serde(rename = "rivals")]
+    pub alternatives: Vec<Alternative>,
     /// Where simulation and recording differ.
     pub locations: Vec<Location>,
     /// How well the models fit, on data that no fit saw, in the channel that the mismatch is largest in.
-    pub fit: Goodness,
+    pub fit: FitQuality,
     /// The same of each channel.
-    pub channels: Vec<Goodness>,
+    pub channels: Vec<FitQuality>,
     /// The nominal values, given and refitted.
     pub nominal: Vec<Nominal>,
     /// Every effect that was tried.
@@ -77,7 +78,7 @@ pub struct Value {
 
 /// What this data cannot tell from the answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct Rival {
+pub struct Alternative {
     /// Effects.
     pub physics: Vec<String>,
     /// As in [`Evidence`].
@@ -108,7 +109,7 @@ pub struct Location {
 
 /// How well the models fit, as root mean squares of the residual on data that no fit saw.
 #[derive(Debug, Clone, Serialize)]
-pub struct Goodness {
+pub struct FitQuality {
     /// "force" or "effort".
     pub channel: &'static str,
     /// "N" or "N m".
@@ -146,7 +147,7 @@ pub struct Nominal {
 
 /// What the page draws beside the answer.
 #[derive(Debug, Clone, Serialize)]
-pub struct Pictures {
+pub struct PlotData {
     /// Name of the rig.
     pub rig: String,
     /// "m" or "rad".
@@ -156,9 +157,9 @@ pub struct Pictures {
     /// A trial and channel each.
     pub traces: Vec<Trace>,
     /// Shares of the energy above the floor: by phase, depth, speed, time and frequency, before and after.
-    pub maps: Vec<Map>,
+    pub maps: Vec<BinnedResidual>,
     /// Evidence of every effect that was tried, the strongest first.
-    pub scores: Vec<Bar>,
+    pub scores: Vec<EffectEvidence>,
     /// The reference to run next, where there are rivals.
     pub experiment: Option<Experiment>,
 }
@@ -183,14 +184,14 @@ pub struct Trace {
     /// With the named physics.
     pub improved: Vec<f32>,
     /// Deviation of what the sensors leave at each moment.
-    pub floor: Vec<f32>,
+    pub expected_noise: Vec<f32>,
     /// Whether a row was seen whole; others are drawn as a gap.
-    pub seen: Vec<bool>,
+    pub valid: Vec<bool>,
 }
 
 /// Where the mismatch lies along one quantity.
 #[derive(Debug, Clone, Serialize)]
-pub struct Map {
+pub struct BinnedResidual {
     /// "force" or "effort".
     pub channel: &'static str,
     /// "phase", "depth", "speed", "time", "frequency".
@@ -209,7 +210,7 @@ pub struct Map {
 
 /// Evidence of one effect.
 #[derive(Debug, Clone, Serialize)]
-pub struct Bar {
+pub struct EffectEvidence {
     /// Name.
     pub name: &'static str,
     /// Share of the held-out residual energy above the floor that it takes alone; below zero where it makes things worse.

@@ -1,20 +1,20 @@
 //! The report of a diagnosis: one self-contained page.
 
 mod axis;
+mod binned_residual;
 mod data;
 mod effect;
 mod evidence;
+mod experiment;
 mod finding;
-mod goodness;
-mod map;
+mod fit_quality;
+mod header;
+mod locations;
 mod nominal;
-mod opening;
-mod place;
-mod reference;
 mod trial;
-mod words;
+mod wording;
 
-use super::diagnosis::{Answer, Pictures, Trace, Verdict};
+use super::diagnosis::{Diagnosis, PlotData, Trace, Verdict};
 use crate::page::shell;
 use maud::html;
 use std::io::{self, Write};
@@ -28,14 +28,14 @@ const SCRIPT: &str = include_str!("../../../assets/diagnose.js");
 /// # Errors
 /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] where the vectors of a trace, a map or the experiment differ
 /// in length.
-pub fn write(answer: &Answer, pictures: &Pictures, out: &mut impl Write) -> io::Result<()> {
+pub fn write(answer: &Diagnosis, pictures: &PlotData, out: &mut impl Write) -> io::Result<()> {
     check(pictures)?;
     let trials = trial::group(answer, pictures);
     shell::open(&format!("{} – palpate diagnose", pictures.rig), STYLE, out)?;
     let body = html! {
-        (opening::header(answer, pictures))
-        (goodness::section(answer))
-        (place::section(answer, pictures))
+        (header::header(answer, pictures))
+        (fit_quality::section(answer))
+        (locations::section(answer, pictures))
         (trial::section(&trials, answer))
         (evidence::section(answer, pictures))
         (nominal::section(answer))
@@ -47,12 +47,12 @@ pub fn write(answer: &Answer, pictures: &Pictures, out: &mut impl Write) -> io::
 }
 
 /// Whether the answer names physics, and a model with it differs from one without.
-fn names_physics(answer: &Answer) -> bool {
+fn names_physics(answer: &Diagnosis) -> bool {
     matches!(answer.verdict, Verdict::Explained | Verdict::PartlyExplained)
         || answer.physics.iter().any(|physics| physics.name != "unknown")
 }
 
-fn check(pictures: &Pictures) -> io::Result<()> {
+fn check(pictures: &PlotData) -> io::Result<()> {
     let torn_trace = pictures.traces.iter().find(|trace| !is_whole(trace)).map(|trace| trace.trial.as_str());
     let torn_map = pictures.maps.iter().find(|map| {
         let bins = map.labels.len();
@@ -70,7 +70,8 @@ fn check(pictures: &Pictures) -> io::Result<()> {
 }
 
 fn is_whole(trace: &Trace) -> bool {
-    let columns = [&trace.depth, &trace.measured, &trace.as_given, &trace.refitted, &trace.improved, &trace.floor];
+    let columns =
+        [&trace.depth, &trace.measured, &trace.as_given, &trace.refitted, &trace.improved, &trace.expected_noise];
     let rows = trace.time.len();
-    trace.seen.len() == rows && columns.iter().all(|column| column.len() == rows)
+    trace.valid.len() == rows && columns.iter().all(|column| column.len() == rows)
 }

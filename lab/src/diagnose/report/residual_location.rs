@@ -3,71 +3,75 @@
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::diagnosis::{Location, Map, Phase};
-use crate::diagnose::bootstrap::fitted_model::Stand;
-use crate::diagnose::bootstrap::problem::Study;
+use super::diagnosis::{BinnedResidual, Location, Phase};
+use crate::diagnose::bootstrap::fitted_model::FittedModel;
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::model::contact_phase;
-use crate::diagnose::model::{Model, Rest};
+use crate::diagnose::model::{Model, Residual};
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
 /// One channel of all trials: what is left of it, and all that a bin can be made by.
-pub struct Channel<'a> {
-    study: &'a Study,
+pub struct ChannelResiduals<'a> {
+    problem: &'a IdentificationProblem,
     /// "force" or "effort".
     pub name: &'static str,
     effort: bool,
     /// Residual before, after, and its floor, row by row, a vector a trial.
     before: Vec<Vec<f64>>,
     after: Vec<Vec<f64>>,
-    floor: Vec<Vec<f64>>,
+    noise_model: Vec<Vec<f64>>,
     /// Residuals of a twin.
-    twin: Vec<Vec<f64>>,
+    replicate: Vec<Vec<f64>>,
     phases: Vec<Vec<Phase>>,
     depths: Vec<Vec<f64>>,
 }
 
 /// Places that are told.
-const TOLD: usize = 6;
+const MAX_LOCATIONS: usize = 6;
 
 /// Least share of a place that is told.
-const WORTH_TELLING: f64 = 0.05;
+const MIN_LOCATION_SHARE: f64 = 0.05;
 
 /// Bins along a quantity.
 const BINS: usize = 8;
 
-impl<'a> Channel<'a> {
-    /// A channel of `study` with `before` and `after` left by two models; `None` where it is not there.
+impl<'a> ChannelResiduals<'a> {
+    /// A channel of `problem` with `before` and `after` left by two models; `None` where it is not there.
     #[must_use]
     pub fn of(
-        study: &'a Study,
-        stand: &Stand,
-        before: &[Rest],
-        after: &[Rest],
-        twin: &[Rest],
+        problem: &'a IdentificationProblem,
+        fitted_model: &FittedModel,
+        before: &[Residual],
+        after: &[Residual],
+        replicate: &[Residual],
         effort: bool,
     ) -> Option<Self> {
-        let floor = if effort { stand.whitener.effort.as_ref()? } else { stand.whitener.force.as_ref()? };
-        let pick = |rests: &[Rest]| -> Vec<Vec<f64>> {
-            rests.iter().map(|rest| if effort { rest.effort.clone() } else { rest.force.clone() }).collect()
+        let noise_model =
+            if effort { fitted_model.whitener.effort.as_ref()? } else { fitted_model.whitener.force.as_ref()? };
+        let pick = |residuals: &[Residual]| -> Vec<Vec<f64>> {
+            residuals
+                .iter()
+                .map(|residual| if effort { residual.effort.clone() } else { residual.force.clone() })
+                .collect()
         };
-        let (model, values): (&Model, &[f64]) = (&stand.model, &stand.values);
-        let trials = study.studio.trials.iter().enumerate();
+        let (model, values): (&Model, &[f64]) = (&fitted_model.model, &fitted_model.values);
+        let trials = problem.sampler.trials.iter().enumerate();
         let (phases, depths) = trials
             .map(|(at, trial)| {
-                let track = trial.track(effort);
-                let phases = contact_phase::phases(model, values, at, track, stand.scene.speed);
-                (phases, contact_phase::depths(model, values, at, track))
+                let filtered = trial.filtered(effort);
+                let phases = contact_phase::phases(model, values, at, filtered, fitted_model.excitation.speed);
+                (phases, contact_phase::depths(model, values, at, filtered))
             })
             .unzip();
         Some(Self {
-            study,
+            problem,
             name: if effort { "effort" } else { "force" },
             effort,
             before: pick(before),
             after: pick(after),
-            floor: floor.deviation.clone(),
-            twin: pick(twin),
+            noise_model: noise_model.deviation.clone(),
+            replicate: pick(replicate),
             phases,
             depths,
         })
@@ -75,14 +79,14 @@ impl<'a> Channel<'a> {
 
     /// Rows that were seen whole.
     fn rows(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.study.studio.trials.iter().enumerate().flat_map(|(trial, both)| {
-            let seen = &both.track(self.effort).seen;
-            (0..seen.len()).filter(|&at| seen[at]).map(move |at| (trial, at))
+        self.problem.sampler.trials.iter().enumerate().flat_map(|(trial, both)| {
+            let valid = &both.filtered(self.effort).valid;
+            (0..valid.len()).filter(|&at| valid[at]).map(move |at| (trial, at))
         })
     }
 
     fn above(&self, (trial, at): (usize, usize)) -> f64 {
-        self.before[trial][at].powi(2) - self.floor[trial][at].powi(2)
+        self.before[trial][at].powi(2) - self.noise_model[trial][at].powi(2)
     }
 
     /// Energy above the floor, the sum of every row's square less that of its floor.
@@ -107,13 +111,13 @@ impl<'a> Channel<'a> {
                     .map(|(_, at)| at)
                     .collect();
                 let share = rows.iter().map(|&at| self.above((trial, at))).sum::<f64>() / total;
-                if share >= WORTH_TELLING {
+                if share >= MIN_LOCATION_SHARE {
                     found.push(self.location(trial, phase, &rows, share.min(1.0), coordinate));
                 }
             }
         }
         found.sort_by(|a, b| b.share.total_cmp(&a.share));
-        found.truncate(TOLD);
+        found.truncate(MAX_LOCATIONS);
         found
     }
 
@@ -121,9 +125,9 @@ impl<'a> Channel<'a> {
         let stretches = rows.chunk_by(|a, b| b - a <= 2);
         let energy = |rows: &[usize]| rows.iter().map(|&at| self.above((trial, at))).sum::<f64>();
         let worst = stretches.max_by(|a, b| energy(a).total_cmp(&energy(b))).unwrap_or(rows);
-        let track = self.study.studio.trials[trial].track(self.effort);
-        let raw = &self.study.studio.raws[trial];
-        let time = |at: Option<&usize>| at.map_or(0.0, |at| raw.origin + *at as f64 * track.step);
+        let filtered = self.problem.sampler.trials[trial].filtered(self.effort);
+        let raw = &self.problem.sampler.uniform_trials[trial];
+        let time = |at: Option<&usize>| at.map_or(0.0, |at| raw.origin + *at as f64 * filtered.step);
         Location {
             channel: self.name,
             trial: raw.name.clone(),
@@ -137,7 +141,7 @@ impl<'a> Channel<'a> {
 
     /// Between which depths and speeds the middle four fifths of the energy lie.
     fn states(&self, trial: usize, rows: &[usize], coordinate: Coordinate) -> String {
-        let track = self.study.studio.trials[trial].track(self.effort);
+        let filtered = self.problem.sampler.trials[trial].filtered(self.effort);
         let range = |pick: &dyn Fn(usize) -> f64| {
             let mut all: Vec<(f64, f64)> =
                 rows.iter().map(|&at| (pick(at), self.above((trial, at)).max(0.0))).collect();
@@ -154,25 +158,25 @@ impl<'a> Channel<'a> {
             (at(0.1), at(0.9))
         };
         let (low, high) = range(&|at| self.depths[trial][at]);
-        let (slow, fast) = range(&|at| track.velocity[at].abs());
+        let (slow, fast) = range(&|at| filtered.velocity[at].abs());
         let (metre, speed) = (coordinate.position_unit(), coordinate.velocity_unit());
         format!("x {}, |v| {}", quantity::between(low, high, metre), quantity::between(slow, fast, speed))
     }
 
     /// The maps of the page.
     #[must_use]
-    pub fn maps(&self, coordinate: Coordinate) -> Vec<Map> {
+    pub fn maps(&self, coordinate: Coordinate) -> Vec<BinnedResidual> {
         let mut maps = vec![self.by_phase()];
-        let tracks = |trial: usize| self.study.studio.trials[trial].track(self.effort);
+        let filtered_trials = |trial: usize| self.problem.sampler.trials[trial].filtered(self.effort);
         maps.push(self.along("depth", coordinate.position_unit(), &|trial, at| self.depths[trial][at]));
-        maps.push(self.along("speed", coordinate.velocity_unit(), &|trial, at| tracks(trial).velocity[at]));
-        maps.push(self.along("time", "s", &|trial, at| at as f64 * tracks(trial).step));
+        maps.push(self.along("speed", coordinate.velocity_unit(), &|trial, at| filtered_trials(trial).velocity[at]));
+        maps.push(self.along("time", "s", &|trial, at| at as f64 * filtered_trials(trial).step));
         maps.push(self.by_frequency());
         maps.retain(|map| map.labels.len() > 1);
         maps
     }
 
-    fn by_phase(&self) -> Map {
+    fn by_phase(&self) -> BinnedResidual {
         let here: Vec<Phase> = contact_phase::ALL
             .into_iter()
             .filter(|phase| self.rows().any(|(trial, at)| self.phases[trial][at] == *phase))
@@ -181,7 +185,7 @@ impl<'a> Channel<'a> {
         self.map("phase", "", labels, &|(trial, at)| here.iter().position(|phase| *phase == self.phases[trial][at]))
     }
 
-    fn along(&self, along: &'static str, unit: &str, pick: &dyn Fn(usize, usize) -> f64) -> Map {
+    fn along(&self, along: &'static str, unit: &str, pick: &dyn Fn(usize, usize) -> f64) -> BinnedResidual {
         let all = self.rows().map(|(trial, at)| pick(trial, at));
         let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let width = (high - low) / BINS as f64;
@@ -201,20 +205,20 @@ impl<'a> Channel<'a> {
         unit: &str,
         labels: Vec<String>,
         bin: &dyn Fn((usize, usize)) -> Option<usize>,
-    ) -> Map {
+    ) -> BinnedResidual {
         let mut sums = vec![[0.0; 4]; labels.len()];
         for row in self.rows() {
             if let Some(sum) = bin(row).and_then(|bin| sums.get_mut(bin)) {
                 let (trial, at) = row;
                 sum[0] += self.before[trial][at].powi(2);
                 sum[1] += self.after[trial][at].powi(2);
-                sum[2] += self.floor[trial][at].powi(2);
+                sum[2] += self.noise_model[trial][at].powi(2);
                 sum[3] += self.above(row);
             }
         }
         let total = self.energy().max(f64::MIN_POSITIVE);
         let over = |which: usize| sums.iter().map(|s| s[which] / s[2].max(f64::MIN_POSITIVE)).collect();
-        Map {
+        BinnedResidual {
             channel: self.name,
             along,
             unit: unit.to_owned(),
@@ -225,18 +229,20 @@ impl<'a> Channel<'a> {
         }
     }
 
-    fn by_frequency(&self) -> Map {
-        let step = self.study.studio.trials.first().map_or(1.0, |trial| trial.track(self.effort).step);
+    fn by_frequency(&self) -> BinnedResidual {
+        let step = self.problem.sampler.trials.first().map_or(1.0, |trial| trial.filtered(self.effort).step);
         let longest = self.before.iter().map(Vec::len).max().unwrap_or(0);
         let highest = 0.4 / step;
         let lowest = (4.0 / (longest as f64 * step)).max(highest / 1000.0);
         let edges: Vec<f64> = crate::effects::geometric(lowest, highest, BINS + 1);
-        let spectra = [&self.before, &self.after, &self.twin].map(|rests| self.spectrum(rests, step, &edges));
-        let [before, after, floor] = &spectra;
-        let above: Vec<f64> = before.iter().zip(floor).map(|(before, floor)| (before - floor).max(0.0)).collect();
+        let spectra =
+            [&self.before, &self.after, &self.replicate].map(|residuals| self.spectrum(residuals, step, &edges));
+        let [before, after, noise_model] = &spectra;
+        let above: Vec<f64> =
+            before.iter().zip(noise_model).map(|(before, noise_model)| (before - noise_model).max(0.0)).collect();
         let total = above.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        let over = |power: &[f64]| power.iter().zip(floor).map(|(p, f)| p / f.max(f64::MIN_POSITIVE)).collect();
-        Map {
+        let over = |power: &[f64]| power.iter().zip(noise_model).map(|(p, f)| p / f.max(f64::MIN_POSITIVE)).collect();
+        BinnedResidual {
             channel: self.name,
             along: "frequency",
             unit: "Hz".to_owned(),
@@ -248,12 +254,12 @@ impl<'a> Channel<'a> {
     }
 
     /// Power between each pair of edges; what was not seen whole counts as nothing.
-    fn spectrum(&self, rests: &[Vec<f64>], step: f64, edges: &[f64]) -> Vec<f64> {
+    fn spectrum(&self, residuals: &[Vec<f64>], step: f64, edges: &[f64]) -> Vec<f64> {
         let mut power = vec![0.0; edges.len().saturating_sub(1)];
-        for (trial, rest) in rests.iter().enumerate() {
-            let seen = &self.study.studio.trials[trial].track(self.effort).seen;
-            let value = |(value, seen): (&f64, &bool)| Complex::new(if *seen { *value } else { 0.0 }, 0.0);
-            let mut wave: Vec<Complex<f64>> = rest.iter().zip(seen).map(value).collect();
+        for (trial, residual) in residuals.iter().enumerate() {
+            let valid = &self.problem.sampler.trials[trial].filtered(self.effort).valid;
+            let value = |(value, valid): (&f64, &bool)| Complex::new(if *valid { *value } else { 0.0 }, 0.0);
+            let mut wave: Vec<Complex<f64>> = residual.iter().zip(valid).map(value).collect();
             let rows = wave.len();
             FftPlanner::new().plan_fft_forward(rows).process(&mut wave);
             for (at, line) in wave.iter().enumerate().take(rows / 2).skip(1) {

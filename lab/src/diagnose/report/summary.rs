@@ -1,28 +1,28 @@
 //! The answer in words that a mechanic understands.
 
-use super::diagnosis::{Answer, Verdict};
+use super::diagnosis::{Diagnosis, Verdict};
 use crate::diagnose::model::contact_phase;
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
 /// One sentence or two.
 #[must_use]
-pub fn summary(answer: &Answer, coordinate: Coordinate) -> String {
+pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
     let fit = &answer.fit;
     let unit = fit.unit;
     let (before, after) = (quantity::rounded(fit.refitted, unit, 3), quantity::rounded(fit.improved, unit, 3));
-    let floor = quantity::rounded(fit.noise_floor, unit, 3);
+    let expected_noise = quantity::rounded(fit.noise_floor, unit, 3);
     let rotary = if coordinate == Coordinate::Rotary { "torque" } else { "force" };
     match answer.verdict {
         Verdict::NoMismatch => {
             format!(
-                "The simulation leaves no more than the sensors do ({floor}): nothing is missing that these recordings could show."
+                "The simulation leaves no more than the sensors do ({expected_noise}): nothing is missing that these recordings could show."
             )
         }
         Verdict::Parameters => {
             let given = quantity::rounded(fit.as_given, unit, 3);
             format!(
-                "No physics is missing, only values are off: refitted, the residual {rotary} falls from {given} to {before}, where the sensors leave {floor}."
+                "No physics is missing, only values are off: refitted, the residual {rotary} falls from {given} to {before}, where the sensors leave {expected_noise}."
             )
         }
         Verdict::Unknown => {
@@ -35,22 +35,22 @@ pub fn summary(answer: &Answer, coordinate: Coordinate) -> String {
                 )
             });
             format!(
-                "Something is missing that no effect of the list explains: {before} are left where the sensors leave {floor}.{place}"
+                "Something is missing that no effect of the list explains: {before} are left where the sensors leave {expected_noise}.{place}"
             )
         }
         Verdict::Explained | Verdict::PartlyExplained => {
             let names: Vec<String> =
                 answer.physics.iter().filter(|p| p.name != "unknown").map(|p| p.name.replace('_', " ")).collect();
             let rest = if answer.verdict == Verdict::PartlyExplained {
-                format!(" Something is left beside that: the sensors alone would leave {floor}.")
+                format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")
             } else {
-                format!(" That is what the sensors leave ({floor}).")
+                format!(" That is what the sensors leave ({expected_noise}).")
             };
-            let rivals = if answer.rivals.is_empty() {
+            let rivals = if answer.alternatives.is_empty() {
                 String::new()
             } else {
                 let all: Vec<String> = answer
-                    .rivals
+                    .alternatives
                     .iter()
                     .map(|r| r.physics.first().map_or(String::new(), |n| n.replace('_', " ")))
                     .collect();

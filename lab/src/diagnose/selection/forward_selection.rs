@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::cross_validation::held_out;
-use crate::diagnose::bootstrap::fitted_model::Stand;
-use crate::diagnose::bootstrap::null_distribution::Null;
-use crate::diagnose::bootstrap::problem::Study;
-use crate::diagnose::estimation::levenberg_marquardt::{self, Data};
-use crate::diagnose::estimation::projection::{Remainder, Score};
-use crate::diagnose::estimation::residual_summary::View;
+use super::cross_validation::cross_validate;
+use crate::diagnose::bootstrap::fitted_model::FittedModel;
+use crate::diagnose::bootstrap::null_distribution::NullDistribution;
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
+use crate::diagnose::estimation::levenberg_marquardt::{self, FitData};
+use crate::diagnose::estimation::projection::{EffectScore, ProjectedResidual};
+use crate::diagnose::estimation::residual_summary::ResidualSummary;
 use crate::diagnose::model::{Model, Term};
 use crate::effects::Stage;
 
@@ -28,7 +28,7 @@ pub struct Candidate {
     /// Power over the floor's there, of force and effort.
     pub powers: [f64; 2],
     /// Energy that it takes from twins, where nothing is missing.
-    pub by_chance: f64,
+    pub chance_gain: f64,
     /// Probability of as much by chance, for it alone.
     pub p_value: f64,
     /// Probability of as much by chance, among all effects.
@@ -36,9 +36,9 @@ pub struct Candidate {
 }
 
 /// What was found on one stand.
-pub struct Round {
+pub struct SelectionStep {
     /// Where it stood.
-    pub stand: Stand,
+    pub fitted_model: FittedModel,
     /// Held-out energy of the stand's own model.
     pub held_out: f64,
     /// Power over the floor's there, of force and effort.
@@ -46,12 +46,12 @@ pub struct Round {
     /// What was tried, the best first.
     pub candidates: Vec<Candidate>,
     /// Whether there is structure beyond chance, by shapes without a name, by energy or by memory.
-    pub structure: Structure,
+    pub structure: RemainingStructure,
 }
 
 /// Structure beyond chance.
 #[derive(Debug, Clone, Copy)]
-pub struct Structure {
+pub struct RemainingStructure {
     /// Probability of as much by chance.
     pub p_value: f64,
     /// Whitened energy over what twins leave.
@@ -61,83 +61,87 @@ pub struct Structure {
 }
 
 /// The whole search.
-pub struct Search {
+pub struct SelectionPath {
     /// Stands in turn; the last is the answer's.
-    pub rounds: Vec<Round>,
+    pub rounds: Vec<SelectionStep>,
 }
 
 /// Twins a stand is judged by, and the rows that many of them can have.
-const TWINS: usize = 40;
-const TWIN_ROWS: f64 = 1.2e6;
+const MAX_REPLICATES: usize = 40;
+const REPLICATE_ROW_BUDGET: f64 = 1.2e6;
 
 /// Effects at most.
-const MOST_EFFECTS: usize = 4;
+const MAX_EFFECTS: usize = 4;
 
 /// Candidates that are judged on held-out data.
-const JUDGED: usize = 8;
+const MAX_CROSS_VALIDATED: usize = 8;
 
 /// Probability of a false alarm on a stand.
-pub const ALARM: f64 = 0.002;
+pub const FALSE_ALARM_RATE: f64 = 0.002;
 
 /// Least size of an effect: share of the residual's root mean square, in a channel it reaches, on data that its fit did not
 /// see.
-const PRACTICAL: f64 = 0.2;
+const MIN_EFFECT_RMS_FRACTION: f64 = 0.2;
 
 /// Share of the energy from which an effect is believed, whatever the encoder's steps may leave of force and of effort.
-const CONVINCING: [f64; 2] = [0.25, 0.05];
+const CONVINCING_FRACTION: [f64; 2] = [0.25, 0.05];
 
 /// Least share of the energy above the floor that a further effect has to take.
-const WORTHWHILE: f64 = 0.12;
+const MIN_GAIN_FRACTION: f64 = 0.12;
 
 /// Runs the search, telling `say` how it goes.
-pub fn search(study: &Study, say: &dyn Fn(&str)) -> Search {
-    let mut model = study.nominal.clone();
-    let mut values = study.first_fit();
-    let mut rounds: Vec<Round> = Vec::new();
+pub fn search(problem: &IdentificationProblem, say: &dyn Fn(&str)) -> SelectionPath {
+    let mut model = problem.nominal.clone();
+    let mut values = problem.initial_fit();
+    let mut rounds: Vec<SelectionStep> = Vec::new();
     loop {
-        say(&format!("twins of the model with {}", names(&model)));
-        let before = rounds.last().map(|round| round.stand.whitener.clone());
-        let mut stand = study.stand(&model, &values, twins(study), before.as_ref());
-        let mut round = round(study, stand, say);
+        say(&format!("twins of the model with {}", effect_names(&model)));
+        let before = rounds.last().map(|round| round.fitted_model.whitener.clone());
+        let mut fitted_model = problem.fit_with_replicates(&model, &values, replicate_count(problem), before.as_ref());
+        let mut round = round(problem, fitted_model, say);
         for _ in 0..2 {
-            let Some(better) = reconverged(study, &round) else { break };
-            stand = study.stand(&model, &better, twins(study), before.as_ref());
-            round = self::round(study, stand, say);
+            let Some(better) = reconverge(problem, &round) else { break };
+            fitted_model = problem.fit_with_replicates(&model, &better, replicate_count(problem), before.as_ref());
+            round = self::round(problem, fitted_model, say);
         }
-        let more = model.terms.len() < MOST_EFFECTS && is_worth_more(study, &rounds, &round);
-        let next = if more { acceptable(study, &round) } else { None };
-        let taken = next.map(|candidate| refined(study, &round.stand, candidate));
+        let more = model.terms.len() < MAX_EFFECTS && is_worth_more(problem, &rounds, &round);
+        let next = if more { acceptable(problem, &round) } else { None };
+        let taken = next.map(|candidate| refine_form(problem, &round.fitted_model, candidate));
         rounds.push(round);
         let Some(taken) = taken else { break };
         (model, values) = taken;
     }
-    Search { rounds }
+    SelectionPath { rounds }
 }
 
 /// Energy, beside the price of its parameters, that a rival or a finer form has to take to stand in a term's place.
-pub const BETTER: f64 = 8.0;
+pub const REPLACEMENT_CHI2_MARGIN: f64 = 8.0;
 
 /// Share of what lies above the floor that a finer form has to take.
-const FINER: f64 = 0.25;
+const MIN_REFINED_FORM_GAIN: f64 = 0.25;
 
 /// Model and values of `candidate`, or of a finer form of its effect that does better.
-fn refined(study: &Study, stand: &Stand, candidate: &Candidate) -> (Model, Vec<f64>) {
-    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
-    let remainder = Remainder::of(data, &stand.model, &stand.values, &stand.scene);
+fn refine_form(
+    problem: &IdentificationProblem,
+    fitted_model: &FittedModel,
+    candidate: &Candidate,
+) -> (Model, Vec<f64>) {
+    let data = FitData { trials: &problem.sampler.trials, whitener: &fitted_model.whitener, rows: None };
+    let projected = ProjectedResidual::of(data, &fitted_model.model, &fitted_model.values, &fitted_model.excitation);
     let finer = |term: &Term| term.refines() && term.name() == candidate.term.name();
     // Far from the floor any bend takes a little: a corner that is round takes most of what the sharp one left.
-    let left = (candidate.energy - mean(stand)).max(0.0);
-    let own = candidate.energy + candidate.term.price() - BETTER - FINER * left;
-    let scores = remainder.scores(&stand.scene, &finer);
+    let left = (candidate.energy - mean_replicate_energy(fitted_model)).max(0.0);
+    let own = candidate.energy + candidate.term.price() - REPLACEMENT_CHI2_MARGIN - MIN_REFINED_FORM_GAIN * left;
+    let scores = projected.scores(&fitted_model.excitation, &finer);
     let fitted = scores.iter().map(|score| {
-        let score = remainder.polished(score, &stand.scene);
-        let model = stand.model.with(score.term);
-        let fit = study.search_fit(&data, stand, &model, &score.values);
+        let score = projected.refine_start(score, &fitted_model.excitation);
+        let model = fitted_model.model.with(score.term);
+        let fit = problem.fit_from_surfaces(&data, fitted_model, &model, &score.values);
         (score.term, model, fit)
     });
     let better = fitted.filter(|(term, model, fit)| {
         fit.energy + term.price() < own
-            && !levenberg_marquardt::is_at_limit(term, model.trials(), &fit.values, &stand.scene)
+            && !levenberg_marquardt::is_at_limit(term, model.trials(), &fit.values, &fitted_model.excitation)
     });
     let best = better.min_by(|a, b| a.2.energy.total_cmp(&b.2.energy));
     best.map_or_else(|| (candidate.model.clone(), candidate.values.clone()), |(_, model, fit)| (model, fit.values))
@@ -145,99 +149,118 @@ fn refined(study: &Study, stand: &Stand, candidate: &Candidate) -> (Model, Vec<f
 
 /// Power over the floor's that is left once something is named, below which nothing further is looked for: a residual five
 /// per cent above what the sensors leave.
-const ENOUGH: f64 = 1.1;
+const SUFFICIENT_POWER_RATIO: f64 = 1.1;
 
 /// Share of the power that the first effects took, below which what is left is the difference between a law and nature.
-const LAW: f64 = 0.005;
+const MIN_REMAINING_FRACTION: f64 = 0.005;
 
 /// Whether what `round` leaves is worth another effect.
-fn is_worth_more(study: &Study, before: &[Round], round: &Round) -> bool {
+fn is_worth_more(problem: &IdentificationProblem, before: &[SelectionStep], round: &SelectionStep) -> bool {
     let Some(first) = before.first() else { return true };
-    let (start, left) = (first.structure.energy_ratio, study.trusted_ratio(&round.stand));
-    left > ENOUGH && left - 1.0 > LAW * (start - left)
+    let (start, left) = (first.structure.energy_ratio, problem.trusted_ratio(&round.fitted_model));
+    left > SUFFICIENT_POWER_RATIO && left - 1.0 > MIN_REMAINING_FRACTION * (start - left)
 }
 
 /// Puts the last stand of `search` on `model` instead.
-pub fn exchange(study: &Study, search: &mut Search, model: &Model, values: &[f64], say: &dyn Fn(&str)) {
-    let before = search.rounds.pop().map(|round| round.stand.whitener);
-    let stand = study.stand(model, values, twins(study), before.as_ref());
-    let fresh = round(study, stand, say);
+pub fn replace_model(
+    problem: &IdentificationProblem,
+    search: &mut SelectionPath,
+    model: &Model,
+    values: &[f64],
+    say: &dyn Fn(&str),
+) {
+    let before = search.rounds.pop().map(|round| round.fitted_model.whitener);
+    let fitted_model = problem.fit_with_replicates(model, values, replicate_count(problem), before.as_ref());
+    let fresh = round(problem, fitted_model, say);
     search.rounds.push(fresh);
 }
 
 /// "coulomb_friction and gravity_load".
-pub fn names(model: &Model) -> String {
+pub fn effect_names(model: &Model) -> String {
     if model.terms.is_empty() {
         return "no effect".to_owned();
     }
     model.terms.iter().map(Term::name).collect::<Vec<_>>().join(" and ")
 }
 
-fn twins(study: &Study) -> usize {
-    let rows: usize = study.studio.trials.iter().map(|trial| trial.contact.len() + trial.drive.len()).sum();
-    ((TWIN_ROWS / rows.max(1) as f64) as usize).clamp(16, TWINS)
+fn replicate_count(problem: &IdentificationProblem) -> usize {
+    let rows: usize = problem.sampler.trials.iter().map(|trial| trial.contact.len() + trial.drive.len()).sum();
+    ((REPLICATE_ROW_BUDGET / rows.max(1) as f64) as usize).clamp(16, MAX_REPLICATES)
 }
 
 /// Energy over that of the stand's own values below which they were not the best.
-const CONVERGED: f64 = 0.97;
+const RECONVERGENCE_RATIO: f64 = 0.97;
 
 /// Better values of the round's own model, where what its candidates made of them shows that there are any: a null that has
 /// not converged is evidence for whatever moves it on.
-fn reconverged(study: &Study, round: &Round) -> Option<Vec<f64>> {
-    let stand = &round.stand;
-    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
-    let own = data.energy(&stand.model, &stand.values);
-    let starts: Vec<&[f64]> = round.candidates.iter().take(6).map(|c| &c.values[..stand.values.len()]).collect();
-    let fits = starts.par_iter().map(|start| levenberg_marquardt::fit(&data, &stand.model, start, &stand.scene));
+fn reconverge(problem: &IdentificationProblem, round: &SelectionStep) -> Option<Vec<f64>> {
+    let fitted_model = &round.fitted_model;
+    let data = FitData { trials: &problem.sampler.trials, whitener: &fitted_model.whitener, rows: None };
+    let own = data.energy(&fitted_model.model, &fitted_model.values);
+    let starts: Vec<&[f64]> = round.candidates.iter().take(6).map(|c| &c.values[..fitted_model.values.len()]).collect();
+    let fits = starts
+        .par_iter()
+        .map(|start| levenberg_marquardt::fit(&data, &fitted_model.model, start, &fitted_model.excitation));
     let best = fits.min_by(|a, b| a.energy.total_cmp(&b.energy))?;
-    (best.energy < CONVERGED * own).then_some(best.values)
+    (best.energy < RECONVERGENCE_RATIO * own).then_some(best.values)
 }
 
-fn round(study: &Study, stand: Stand, say: &dyn Fn(&str)) -> Round {
-    let structure = structure(&stand);
-    let held = held_out(study, &stand.whitener, &stand.model, &stand.values, &stand.scene);
+fn round(problem: &IdentificationProblem, fitted_model: FittedModel, say: &dyn Fn(&str)) -> SelectionStep {
+    let structure = remaining_structure(&fitted_model);
+    let held = cross_validate(
+        problem,
+        &fitted_model.whitener,
+        &fitted_model.model,
+        &fitted_model.values,
+        &fitted_model.excitation,
+    );
     say("every effect in turn");
-    let candidates = candidates(study, &stand);
-    Round { stand, held_out: held.energy, powers: held.powers, candidates, structure }
+    let candidates = candidates(problem, &fitted_model);
+    SelectionStep { fitted_model, held_out: held.energy, powers: held.powers, candidates, structure }
 }
 
 /// Null distributions of `scores`, in their order.
-fn nulls(stand: &Stand, scores: &[&Score]) -> Vec<Null> {
-    let null = |score: &&Score| {
-        let gains: Vec<f64> = stand.twins.iter().map(|twin| twin.gain(&score.term).unwrap_or(0.0)).collect();
-        Null::of(&gains, 2.0)
+fn null_distributions(fitted_model: &FittedModel, scores: &[&EffectScore]) -> Vec<NullDistribution> {
+    let null = |score: &&EffectScore| {
+        let gains: Vec<f64> =
+            fitted_model.replicates.iter().map(|replicate| replicate.gain(&score.term).unwrap_or(0.0)).collect();
+        NullDistribution::of(&gains, 2.0)
     };
     scores.iter().map(null).collect()
 }
 
 /// The distribution, over twins, of the farthest that any of `scores` lies beyond its own.
-fn farthest(stand: &Stand, scores: &[&Score], nulls: &[Null]) -> Null {
-    let of = |twin: &View| {
-        let beyond = scores.iter().zip(nulls).map(|(own, null)| null.beyond(twin.gain(&own.term).unwrap_or(0.0)));
+fn max_deviation_null(
+    fitted_model: &FittedModel,
+    scores: &[&EffectScore],
+    nulls: &[NullDistribution],
+) -> NullDistribution {
+    let of = |replicate: &ResidualSummary| {
+        let beyond = scores.iter().zip(nulls).map(|(own, null)| null.beyond(replicate.gain(&own.term).unwrap_or(0.0)));
         beyond.fold(f64::NEG_INFINITY, f64::max)
     };
-    Null::of(&stand.twins.iter().map(of).collect::<Vec<_>>(), 1.0)
+    NullDistribution::of(&fitted_model.replicates.iter().map(of).collect::<Vec<_>>(), 1.0)
 }
 
-fn candidates(study: &Study, stand: &Stand) -> Vec<Candidate> {
-    let scores: Vec<&Score> = stand.view.promising().collect();
-    let nulls = nulls(stand, &scores);
-    let farthest = farthest(stand, &scores, &nulls);
+fn candidates(problem: &IdentificationProblem, fitted_model: &FittedModel) -> Vec<Candidate> {
+    let scores: Vec<&EffectScore> = fitted_model.summary.promising().collect();
+    let nulls = null_distributions(fitted_model, &scores);
+    let farthest = max_deviation_null(fitted_model, &scores, &nulls);
     // The promising are the best of all that were asked: as if each had been drawn that many times.
-    let draws = stand.view.scores.len() as f64 / scores.len().max(1) as f64;
-    let data = Data { trials: &study.studio.trials, whitener: &stand.whitener, rows: None };
-    let remainder = Remainder::of(data, &stand.model, &stand.values, &stand.scene);
-    let own = stand.view.energy;
+    let draws = fitted_model.summary.scores.len() as f64 / scores.len().max(1) as f64;
+    let data = FitData { trials: &problem.sampler.trials, whitener: &fitted_model.whitener, rows: None };
+    let projected = ProjectedResidual::of(data, &fitted_model.model, &fitted_model.values, &fitted_model.excitation);
+    let own = fitted_model.summary.energy;
     let mut fitted: Vec<Candidate> = scores
         .par_iter()
         .zip(&nulls)
         .map(|(score, null)| {
-            let score = &remainder.polished(score, &stand.scene);
-            let model = stand.model.with(score.term);
-            let fit = study.search_fit(&data, stand, &model, &score.values);
+            let score = &projected.refine_start(score, &fitted_model.excitation);
+            let model = fitted_model.model.with(score.term);
+            let fit = problem.fit_from_surfaces(&data, fitted_model, &model, &score.values);
             // Twins were asked by projection alone: a search that goes on from there is not held against them in full.
-            let gain = score.gain.max(0.5 * (stand.view.energy - fit.energy));
-            let p_any = among(farthest.p_value(null.beyond(gain)), draws);
+            let gain = score.gain.max(0.5 * (fitted_model.summary.energy - fit.energy));
+            let p_any = sidak_correction(farthest.p_value(null.beyond(gain)), draws);
             let p_value = null.p_value(gain);
             Candidate {
                 term: score.term,
@@ -246,16 +269,23 @@ fn candidates(study: &Study, stand: &Stand) -> Vec<Candidate> {
                 energy: fit.energy,
                 held_out: f64::INFINITY,
                 powers: [f64::INFINITY; 2],
-                by_chance: by_chance(stand, &score.term) + hidden(&score.term) * (own - fit.energy).max(0.0),
+                chance_gain: chance_gain(fitted_model, &score.term)
+                    + transmission_discount(&score.term) * (own - fit.energy).max(0.0),
                 p_value,
                 p_any,
             }
         })
         .collect();
-    fitted.sort_by(|a, b| (a.energy + a.by_chance).total_cmp(&(b.energy + b.by_chance)));
-    let judged = JUDGED.min(fitted.len());
+    fitted.sort_by(|a, b| (a.energy + a.chance_gain).total_cmp(&(b.energy + b.chance_gain)));
+    let judged = MAX_CROSS_VALIDATED.min(fitted.len());
     fitted[..judged].par_iter_mut().for_each(|candidate| {
-        let held = held_out(study, &stand.whitener, &candidate.model, &candidate.values, &stand.scene);
+        let held = cross_validate(
+            problem,
+            &fitted_model.whitener,
+            &candidate.model,
+            &candidate.values,
+            &fitted_model.excitation,
+        );
         (candidate.held_out, candidate.powers) = (held.energy, held.powers);
     });
     fitted.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
@@ -265,89 +295,98 @@ fn candidates(study: &Study, stand: &Stand) -> Vec<Candidate> {
 /// Held-out energy, and what a value more has to earn before it is believed over a simpler law.
 fn rank(candidate: &Candidate) -> f64 {
     let free = candidate.term.parameters().iter().filter(|parameter| !parameter.fixed).count();
-    candidate.held_out + 4.0 * free as f64 + 1.5 * candidate.by_chance
+    candidate.held_out + 4.0 * free as f64 + 1.5 * candidate.chance_gain
 }
 
 /// Share of its gain that is not believed of an effect: a hidden motor behind a link can follow much that is none.
-pub fn hidden(term: &Term) -> f64 {
-    if term.effect.card().stage == Stage::Transmission { 0.15 } else { 0.0 }
+pub fn transmission_discount(term: &Term) -> f64 {
+    if term.effect.spec().stage == Stage::Transmission { 0.15 } else { 0.0 }
 }
 
 /// The probability that the least of `draws` is as small as `p_value`.
-fn among(p_value: f64, draws: f64) -> f64 {
+fn sidak_correction(p_value: f64, draws: f64) -> f64 {
     -(draws * (-p_value).ln_1p()).exp_m1()
 }
 
 /// Mean energy that `term` takes from twins: where they were not asked, that of white noise.
-pub fn by_chance(stand: &Stand, term: &Term) -> f64 {
-    let gains: Vec<f64> = stand.twins.iter().filter_map(|twin| twin.gain(term)).collect();
+pub fn chance_gain(fitted_model: &FittedModel, term: &Term) -> f64 {
+    let gains: Vec<f64> = fitted_model.replicates.iter().filter_map(|replicate| replicate.gain(term)).collect();
     if gains.is_empty() {
         return term.parameters().iter().filter(|parameter| !parameter.fixed).count() as f64;
     }
-    gains.iter().sum::<f64>() / stand.twins.len() as f64
+    gains.iter().sum::<f64>() / fitted_model.replicates.len() as f64
 }
 
 /// The best candidate of a round, if it is beyond chance and large enough to matter.
-fn acceptable<'a>(study: &Study, round: &'a Round) -> Option<&'a Candidate> {
-    let [force, effort] = study.doubtful(&round.stand);
-    let left = round.stand.view.energy;
-    let above = (left - mean(&round.stand)).max(0.0);
+fn acceptable<'a>(problem: &IdentificationProblem, round: &'a SelectionStep) -> Option<&'a Candidate> {
+    let [force, effort] = problem.within_quantization(&round.fitted_model);
+    let left = round.fitted_model.summary.energy;
+    let above = (left - mean_replicate_energy(&round.fitted_model)).max(0.0);
     let able = |candidate: &&Candidate| {
-        let gain = left - candidate.energy - candidate.by_chance;
+        let gain = left - candidate.energy - candidate.chance_gain;
         // What the encoder's steps leave follows no law: one that takes so much of it is no rounding.
-        let convincing = CONVINCING.map(|share| gain > share * left && candidate.p_any < ALARM * ALARM);
+        let convincing = CONVINCING_FRACTION
+            .map(|share| gain > share * left && candidate.p_any < FALSE_ALARM_RATE * FALSE_ALARM_RATE);
         let model = &candidate.model;
-        candidate.p_any < ALARM
-            && !levenberg_marquardt::is_at_limit(&candidate.term, model.trials(), &candidate.values, &round.stand.scene)
+        candidate.p_any < FALSE_ALARM_RATE
+            && !levenberg_marquardt::is_at_limit(
+                &candidate.term,
+                model.trials(),
+                &candidate.values,
+                &round.fitted_model.excitation,
+            )
             && candidate.held_out < round.held_out
-            && is_practical(round, [force && !convincing[0], effort && !convincing[1]], candidate)
-            && gain > WORTHWHILE * above
-            && is_shown(study, candidate)
+            && is_large_enough(round, [force && !convincing[0], effort && !convincing[1]], candidate)
+            && gain > MIN_GAIN_FRACTION * above
+            && is_identifiable(problem, candidate)
     };
     round.candidates.iter().find(able)
 }
 
 /// Whether the recordings, as its own fit sees them, show what `candidate` is told by: a surface that was moved until nothing is
 /// free any more says nothing of the sensor's zero.
-fn is_shown(study: &Study, candidate: &Candidate) -> bool {
+fn is_identifiable(problem: &IdentificationProblem, candidate: &Candidate) -> bool {
     let (effect, form) = (candidate.term.effect, candidate.term.form);
-    let scene = study.scene(&candidate.model, &candidate.values);
-    !effect.starts(form, &scene).is_empty() || effect.tones(form, &scene).is_some()
+    let excitation = problem.excitation_stats(&candidate.model, &candidate.values);
+    !effect.starts(form, &excitation).is_empty() || effect.frequency_search(form, &excitation).is_some()
 }
 
 /// Whether `candidate` is large enough to matter: it takes something where there is more than twins leave, and where that
 /// is not the encoder's.
-fn is_practical(round: &Round, doubtful: [bool; 2], candidate: &Candidate) -> bool {
-    let ratios = round.stand.power_ratios();
+fn is_large_enough(round: &SelectionStep, within_quantization: [bool; 2], candidate: &Candidate) -> bool {
+    let ratios = round.fitted_model.power_ratios();
     (0..2).any(|channel| {
-        !doubtful[channel]
+        !within_quantization[channel]
             && ratios[channel] > 1.0
-            && candidate.powers[channel] < (1.0 - PRACTICAL * PRACTICAL) * round.powers[channel]
+            && candidate.powers[channel]
+                < (1.0 - MIN_EFFECT_RMS_FRACTION * MIN_EFFECT_RMS_FRACTION) * round.powers[channel]
     })
 }
 
 /// Mean energy that twins leave.
-pub fn mean(stand: &Stand) -> f64 {
-    stand.twins.iter().map(|view| view.energy).sum::<f64>() / stand.twins.len().max(1) as f64
+pub fn mean_replicate_energy(fitted_model: &FittedModel) -> f64 {
+    fitted_model.replicates.iter().map(|summary| summary.energy).sum::<f64>()
+        / fitted_model.replicates.len().max(1) as f64
 }
 
-fn structure(stand: &Stand) -> Structure {
-    let figures = |view: &View| {
-        let mut all: Vec<(&'static str, f64)> = view.textures.iter().map(|t| (t.name, t.gain)).collect();
-        all.push(("the power of the force", 1e3 * view.powers[0]));
-        all.push(("the power of the effort", 1e3 * view.powers[1]));
-        all.push(("memory", view.memory));
+fn remaining_structure(fitted_model: &FittedModel) -> RemainingStructure {
+    let figures = |summary: &ResidualSummary| {
+        let mut all: Vec<(&'static str, f64)> = summary.residual_tests.iter().map(|t| (t.name, t.gain)).collect();
+        all.push(("the power of the force", 1e3 * summary.powers[0]));
+        all.push(("the power of the effort", 1e3 * summary.powers[1]));
+        all.push(("memory", summary.memory));
         all
     };
-    let own = figures(&stand.view);
-    let twins: Vec<_> = stand.twins.iter().map(figures).collect();
-    let nulls: Vec<Null> =
-        (0..own.len()).map(|at| Null::of(&twins.iter().map(|twin| twin[at].1).collect::<Vec<_>>(), 2.0)).collect();
+    let own = figures(&fitted_model.summary);
+    let replicates: Vec<_> = fitted_model.replicates.iter().map(figures).collect();
+    let nulls: Vec<NullDistribution> = (0..own.len())
+        .map(|at| NullDistribution::of(&replicates.iter().map(|replicate| replicate[at].1).collect::<Vec<_>>(), 2.0))
+        .collect();
     let most = |all: &[(&'static str, f64)]| {
         let beyond = all.iter().zip(&nulls).map(|((name, figure), null)| (*name, null.beyond(*figure)));
         beyond.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("nothing", 0.0))
     };
-    let null = Null::of(&twins.iter().map(|twin| most(twin).1).collect::<Vec<_>>(), 1.0);
+    let null = NullDistribution::of(&replicates.iter().map(|replicate| most(replicate).1).collect::<Vec<_>>(), 1.0);
     let (found_by, beyond) = most(&own);
-    Structure { p_value: null.p_value(beyond), energy_ratio: stand.power_ratio(), found_by }
+    RemainingStructure { p_value: null.p_value(beyond), energy_ratio: fitted_model.power_ratio(), found_by }
 }

@@ -1,53 +1,58 @@
 //! How sharply recordings are looked at: as their noise allows, and no more sharply than what is found stays what it is.
 
-use super::derivative_filter::Lens;
-use super::filtered_trial::Track;
-use super::uniform_trial::Raw;
+use super::derivative_filter::DerivativeFilter;
+use super::filtered_trial::FilteredTrial;
+use super::uniform_trial::UniformTrial;
 use crate::diagnose::linalg::solve;
 use crate::rig::Rig;
 
 /// How much less sharply the drive is looked at once more, and the share by which its inertia may differ then.
-const CALMER: f64 = 1.4;
-const ASTRAY: f64 = 0.05;
+const BANDWIDTH_STEP: f64 = 1.4;
+const INERTIA_TOLERANCE: f64 = 0.05;
 
 /// Periods of the -3 dB frequency that all trials together have at the least: fewer tell no inertia.
-const LEAST_TURNS: f64 = 10.0;
+const MIN_CUTOFF_PERIODS: f64 = 10.0;
 
 /// The filters for the contact and for the drive.
 #[must_use]
-pub fn lenses(rig: &Rig, raws: &[Raw]) -> (Lens, Lens) {
-    let drive = Lens::for_drive(rig, raws);
-    let alone = rig.drive.is_some() && raws.iter().all(|raw| raw.force.is_none());
-    (Lens::for_contact(rig, raws), if alone { settled(drive, raws) } else { drive })
+pub fn analysis_filters(rig: &Rig, uniform_trials: &[UniformTrial]) -> (DerivativeFilter, DerivativeFilter) {
+    let drive = DerivativeFilter::for_drive(rig, uniform_trials);
+    let alone = rig.drive.is_some() && uniform_trials.iter().all(|raw| raw.force.is_none());
+    (
+        DerivativeFilter::for_contact(rig, uniform_trials),
+        if alone { stable_inertia_filter(drive, uniform_trials) } else { drive },
+    )
 }
 
 /// A filter behind which the inertia does not depend on how sharp it is: clocks that jitter and efforts that are told by a
 /// current leave more in the balance than noise of the position would, and no force is there to say so.
-fn settled(sharpest: Lens, raws: &[Raw]) -> Lens {
-    let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
-    let mut lens = sharpest.clone();
-    while lens.corner() * seconds > LEAST_TURNS {
-        let calmer = lens.calmer(CALMER);
-        match (inertia(raws, &lens), inertia(raws, &calmer)) {
-            (Some(here), Some(there)) if (here - there).abs() > ASTRAY * there.abs() => lens = calmer,
-            (Some(_), Some(_)) => return lens,
+fn stable_inertia_filter(sharpest: DerivativeFilter, uniform_trials: &[UniformTrial]) -> DerivativeFilter {
+    let seconds: f64 = uniform_trials.iter().map(|raw| raw.len() as f64 * raw.period).sum();
+    let mut filter = sharpest.clone();
+    while filter.cutoff_hz() * seconds > MIN_CUTOFF_PERIODS {
+        let with_lower_cutoff = filter.with_lower_cutoff(BANDWIDTH_STEP);
+        match (inertia(uniform_trials, &filter), inertia(uniform_trials, &with_lower_cutoff)) {
+            (Some(here), Some(there)) if (here - there).abs() > INERTIA_TOLERANCE * there.abs() => {
+                filter = with_lower_cutoff
+            }
+            (Some(_), Some(_)) => return filter,
             _ => return sharpest,
         }
     }
     sharpest
 }
 
-/// The inertia that least squares give behind `lens`, beside viscous and dry friction, a weight that turns with the position,
+/// The inertia that least squares give behind `filter`, beside viscous and dry friction, a weight that turns with the position,
 /// and an offset; `None` where they cannot be told apart.
-fn inertia(raws: &[Raw], lens: &Lens) -> Option<f64> {
+fn inertia(uniform_trials: &[UniformTrial], filter: &DerivativeFilter) -> Option<f64> {
     let mut columns: [Vec<f64>; 6] = Default::default();
     let mut efforts = Vec::new();
-    for raw in raws {
-        let track = Track::of(raw, lens);
-        for (at, effort) in track.effort.iter().flatten().enumerate().filter(|(at, _)| track.seen[*at]) {
-            let (position, velocity) = (track.position[at], track.velocity[at]);
-            let direction = if velocity.abs() <= track.speed_noise { 0.0 } else { velocity.signum() };
-            let row = [track.acceleration[at], velocity, direction, position.sin(), position.cos(), 1.0];
+    for raw in uniform_trials {
+        let filtered = FilteredTrial::of(raw, filter);
+        for (at, effort) in filtered.effort.iter().flatten().enumerate().filter(|(at, _)| filtered.valid[*at]) {
+            let (position, velocity) = (filtered.position[at], filtered.velocity[at]);
+            let direction = if velocity.abs() <= filtered.velocity_noise { 0.0 } else { velocity.signum() };
+            let row = [filtered.acceleration[at], velocity, direction, position.sin(), position.cos(), 1.0];
             columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
             efforts.push(*effort);
         }

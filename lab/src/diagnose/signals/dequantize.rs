@@ -6,11 +6,11 @@
 //! reading stays as it is.
 
 /// Rows on one count from which its ends tell more than its height.
-const LONG: usize = 3;
+const MIN_ROWS_ON_COUNT: usize = 3;
 
 /// A stretch of rows on one count.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct CountRun {
     first: usize,
     /// One beyond the last.
     end: usize,
@@ -19,26 +19,26 @@ struct Run {
 
 /// An instant at which the position is known.
 #[derive(Debug, Clone, Copy)]
-struct Knot {
+struct Transition {
     time: f64,
     value: f64,
 }
 
 /// Replaces readings in steps of `step` by the motion that its steps tell.
-pub fn unround(time: impl Fn(usize) -> f64, values: &mut [f64], step: f64) {
+pub fn dequantize(time: impl Fn(usize) -> f64, values: &mut [f64], step: f64) {
     if step <= 0.0 {
         return;
     }
     let runs = runs(values, step);
-    let knot = |left: &Run, right: &Run| Knot {
+    let knot = |left: &CountRun, right: &CountRun| Transition {
         time: 0.5 * (time(left.end - 1) + time(right.first)),
         value: 0.5 * (left.level + right.level),
     };
-    let knots: Vec<Knot> = runs.windows(2).map(|pair| knot(&pair[0], &pair[1])).collect();
+    let knots: Vec<Transition> = runs.windows(2).map(|pair| knot(&pair[0], &pair[1])).collect();
     // Run i lies between knots i - 1 and i.
     for at in 1..runs.len().saturating_sub(1) {
         let run = runs[at];
-        if run.end - run.first >= LONG {
+        if run.end - run.first >= MIN_ROWS_ON_COUNT {
             let slope_in = slope(&knots, at - 1);
             let slope_out = slope(&knots, at);
             fill(&time, values, run, (knots[at - 1], slope_in), (knots[at], slope_out), step);
@@ -46,20 +46,20 @@ pub fn unround(time: impl Fn(usize) -> f64, values: &mut [f64], step: f64) {
     }
 }
 
-fn runs(values: &[f64], step: f64) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+fn runs(values: &[f64], step: f64) -> Vec<CountRun> {
+    let mut runs: Vec<CountRun> = Vec::new();
     for (row, &level) in values.iter().enumerate() {
         match runs.last_mut() {
             Some(run) if (run.level - level).abs() < 0.5 * step => run.end = row + 1,
-            _ => runs.push(Run { first: row, end: row + 1, level }),
+            _ => runs.push(CountRun { first: row, end: row + 1, level }),
         }
     }
     runs
 }
 
 /// Slope of the parabola through a knot and its neighbours.
-fn slope(knots: &[Knot], at: usize) -> f64 {
-    let secant = |a: Knot, b: Knot| (b.value - a.value) / (b.time - a.time);
+fn slope(knots: &[Transition], at: usize) -> f64 {
+    let secant = |a: Transition, b: Transition| (b.value - a.value) / (b.time - a.time);
     match (at.checked_sub(1).map(|before| knots[before]), knots.get(at + 1)) {
         (Some(before), Some(after)) => {
             let (left, right) = (knots[at].time - before.time, after.time - knots[at].time);
@@ -75,9 +75,9 @@ fn slope(knots: &[Knot], at: usize) -> f64 {
 fn fill(
     time: &impl Fn(usize) -> f64,
     values: &mut [f64],
-    run: Run,
-    (from, slope_in): (Knot, f64),
-    (to, slope_out): (Knot, f64),
+    run: CountRun,
+    (from, slope_in): (Transition, f64),
+    (to, slope_out): (Transition, f64),
     step: f64,
 ) {
     let span = to.time - from.time;

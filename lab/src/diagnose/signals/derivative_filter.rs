@@ -7,164 +7,170 @@
 //! the sensors are better than the rows one can afford, the Gaussian is passed in two: the law acts on the motion behind
 //! the first, and what it leaves passes the second.
 
-use super::uniform_trial::Raw;
+use super::uniform_trial::UniformTrial;
 use crate::diagnose::linalg::dot;
 use crate::rig::Rig;
 
 /// The filter and the clock of the analysis.
 #[derive(Debug, Clone)]
-pub struct Lens {
+pub struct DerivativeFilter {
     /// Width of the Gaussian, s.
-    pub blur: f64,
+    pub filter_width: f64,
     /// Raw rows a row of the analysis.
     pub stride: usize,
     /// Seconds of a raw row.
     pub period: f64,
     /// Half the support of the filter, rows.
-    reach: usize,
+    half_width_rows: usize,
     level: Vec<f64>,
-    slope: Vec<f64>,
-    bend: Vec<f64>,
+    first_derivative: Vec<f64>,
+    second_derivative: Vec<f64>,
     jerk: Vec<f64>,
     snap: Vec<f64>,
     crackle: Vec<f64>,
     held: Vec<f64>,
-    held_slope: Vec<f64>,
-    passes: Option<Box<Passes>>,
+    held_derivative: Vec<f64>,
+    passes: Option<Box<CascadedFilter>>,
 }
 
 /// A Gaussian as two, one after the other.
 #[derive(Debug, Clone)]
-pub struct Passes {
+pub struct CascadedFilter {
     /// What laws act behind, on the raw rows.
-    pub first: Lens,
+    pub first: DerivativeFilter,
     /// What their residual passes then, on the rows of the first.
-    pub second: Lens,
+    pub second: DerivativeFilter,
 }
 
-/// Width of a Gaussian whose -3 dB frequency is f: `WIDTH / f`.
-const WIDTH: f64 = 0.132_5;
+/// Width of a Gaussian whose -3 dB frequency is f: `CUTOFF_TIMES_WIDTH / f`.
+const CUTOFF_TIMES_WIDTH: f64 = 0.132_5;
 
 /// Greatest share of the rate that is looked at.
-const MOST: f64 = 0.2;
+const MAX_CUTOFF_OVER_RATE: f64 = 0.2;
 
 /// Rows of the analysis a period of the -3 dB frequency. The Gaussian is down to a ninth where they alias.
-const ROWS: f64 = 5.0;
+const ROWS_PER_CUTOFF_PERIOD: f64 = 5.0;
 
 /// Deviation that position noise may add to the predicted force, over that of the force noise. A coarse encoder hides
 /// true motion below its step, which the drive's answer to its own steps makes: what cannot be seen is smoothed away.
-const SHARE: f64 = 0.6;
+const MAX_POSITION_NOISE_RATIO: f64 = 0.6;
 
 /// Part of the drive's inertia that may be carried beyond the force sensor or with the surface, and the deviation that
 /// noise of its acceleration may add, over that of the force noise. The drive shakes the tool by less than a step of the
 /// encoder; a mass feels that, and seen through the steps it seems lighter than it is.
-const CARRIED: f64 = 0.05;
-const UNSEEN: f64 = 0.05;
+const CARRIED_MASS_FRACTION: f64 = 0.05;
+const MAX_ACCELERATION_NOISE_RATIO: f64 = 0.05;
 
 /// Share of the sharpest filter that noise allows where nobody says how heavy the drive is.
-const UNTOLD: f64 = 0.3;
+const CUTOFF_FRACTION_UNKNOWN_INERTIA: f64 = 0.3;
 
 /// Widths after which the Gaussian ends: 3e-4 of its peak.
-const SUPPORT: f64 = 4.0;
+const HALF_WIDTH_SIGMAS: f64 = 4.0;
 
 /// Rows of the analysis that all trials together should have, unless that would blind it.
-const BUDGET: f64 = 9_000.0;
+const ROW_BUDGET: f64 = 9_000.0;
 
 /// Rows of all trials together beyond which a quicker clock tells nothing of how sharp the least filter may be.
-const PLENTY: f64 = 60_000.0;
+const AMPLE_ROWS: f64 = 60_000.0;
 
 /// Rows below which none are given up for a law to act between two filters.
-const FEW: f64 = 1_000.0;
+const MIN_ROWS_FOR_CASCADE: f64 = 1_000.0;
 
 /// How much sharper laws may look than the rows that are kept of what they leave.
-const SHARPER: f64 = 3.0;
+const MAX_CASCADE_RATIO: f64 = 3.0;
 
 /// Share of a tone's frequency at which the filter that has to show it ends: a third of it passes.
-const SHOWN: f64 = 0.6;
+const CUTOFF_OVER_TONE: f64 = 0.6;
 
 /// The frequency down to which the force has to be looked at for a tone that stands out of it.
-fn heard(raws: &[Raw]) -> f64 {
-    SHOWN * raws.iter().filter_map(|raw| raw.hum).fold(0.0, f64::max)
+fn min_cutoff_for_tone(uniform_trials: &[UniformTrial]) -> f64 {
+    CUTOFF_OVER_TONE * uniform_trials.iter().filter_map(|raw| raw.hum).fold(0.0, f64::max)
 }
 
-impl Lens {
+impl DerivativeFilter {
     /// The sharpest filter for the contact: what position noise does to the predicted force stays near what force noise
     /// does, within what the clock allows.
     #[must_use]
-    pub fn for_contact(rig: &Rig, raws: &[Raw]) -> Self {
-        let (position, force) = noises(raws);
-        let corner = rig.contact.map_or(f64::INFINITY, |contact| {
+    pub fn for_contact(rig: &Rig, uniform_trials: &[UniformTrial]) -> Self {
+        let (position, force) = sensor_noise(uniform_trials);
+        let cutoff_hz = rig.contact.map_or(f64::INFINITY, |contact| {
             let spring = contact.stiffness * position;
-            let left = ((SHARE * force).powi(2) - spring * spring).max(0.0);
-            let slope = contact.damping * position * std::f64::consts::TAU / 3f64.sqrt();
-            if slope > 0.0 && force > 0.0 { left.sqrt() / slope } else { f64::INFINITY }
+            let left = ((MAX_POSITION_NOISE_RATIO * force).powi(2) - spring * spring).max(0.0);
+            let damping = contact.damping * position * std::f64::consts::TAU / 3f64.sqrt();
+            if damping > 0.0 && force > 0.0 { left.sqrt() / damping } else { f64::INFINITY }
         });
-        let calm = rig.drive.map_or(UNTOLD * corner, |drive| {
-            let carried = CARRIED * drive.inertia * position;
-            let calm = (UNSEEN * force * 5f64.sqrt() / carried).sqrt() / std::f64::consts::TAU;
+        let calm = rig.drive.map_or(CUTOFF_FRACTION_UNKNOWN_INERTIA * cutoff_hz, |drive| {
+            let carried = CARRIED_MASS_FRACTION * drive.inertia * position;
+            let calm = (MAX_ACCELERATION_NOISE_RATIO * force * 5f64.sqrt() / carried).sqrt() / std::f64::consts::TAU;
             if carried > 0.0 && force > 0.0 { calm } else { f64::INFINITY }
         });
-        let sharpest = raws.first().map_or(corner, |raw| corner.min(MOST / raw.period));
-        let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
-        let whole = calm.min(0.5 * sharpest).max(FEW / (ROWS * seconds.max(f64::MIN_POSITIVE))).min(corner);
-        Self::cornered(raws, (corner, whole), (0.02, heard(raws)), BUDGET)
+        let sharpest = uniform_trials.first().map_or(cutoff_hz, |raw| cutoff_hz.min(MAX_CUTOFF_OVER_RATE / raw.period));
+        let seconds: f64 = uniform_trials.iter().map(|raw| raw.len() as f64 * raw.period).sum();
+        let whole = calm
+            .min(0.5 * sharpest)
+            .max(MIN_ROWS_FOR_CASCADE / (ROWS_PER_CUTOFF_PERIOD * seconds.max(f64::MIN_POSITIVE)))
+            .min(cutoff_hz);
+        Self::with_cutoffs(uniform_trials, (cutoff_hz, whole), (0.02, min_cutoff_for_tone(uniform_trials)), ROW_BUDGET)
     }
 
     /// The sharpest filter for the drive: the same of what position noise does to inertia times acceleration.
     #[must_use]
-    pub fn for_drive(rig: &Rig, raws: &[Raw]) -> Self {
-        let (position, force) = noises(raws);
+    pub fn for_drive(rig: &Rig, uniform_trials: &[UniformTrial]) -> Self {
+        let (position, force) = sensor_noise(uniform_trials);
         let shaken = rig.drive.map_or(0.0, |drive| drive.inertia * position);
         // Where no force is measured, the effort itself says what the balance is good for: its noise, or a hundredth of it.
         // A fifth of it, for nothing else holds the inertia against the noise of the acceleration.
-        let force = if force > 0.0 { force } else { 0.2 * raws.iter().map(effort_noise).fold(0.0, f64::max) };
-        let corner = match (shaken > 0.0, force > 0.0) {
+        let force = if force > 0.0 { force } else { 0.2 * uniform_trials.iter().map(effort_noise).fold(0.0, f64::max) };
+        let cutoff_hz = match (shaken > 0.0, force > 0.0) {
             (true, true) => (3.0 * 5f64.sqrt() * force / shaken).sqrt() / std::f64::consts::TAU,
             _ => f64::INFINITY,
         };
-        Self::cornered(raws, (corner, corner), (0.01, 0.0), 0.5 * BUDGET)
+        Self::with_cutoffs(uniform_trials, (cutoff_hz, cutoff_hz), (0.01, 0.0), 0.5 * ROW_BUDGET)
     }
 
-    /// Laws act behind the first of `corners` in Hz, what they leave is kept behind the second, as far as clock and `budget`
+    /// Laws act behind the first of `cutoffs_hz` in Hz, what they leave is kept behind the second, as far as clock and `budget`
     /// of rows allow, not below a share of the rate, as far as that is no quicker than it need be, and not below a frequency in
     /// Hz: the two of `least`.
-    fn cornered(raws: &[Raw], corners: (f64, f64), least: (f64, f64), budget: f64) -> Self {
-        let period = raws.first().map_or(1.0, |raw| raw.period);
+    fn with_cutoffs(uniform_trials: &[UniformTrial], cutoffs_hz: (f64, f64), least: (f64, f64), budget: f64) -> Self {
+        let period = uniform_trials.first().map_or(1.0, |raw| raw.period);
         let rate = period.recip();
-        let seconds: f64 = raws.iter().map(|raw| raw.len() as f64 * raw.period).sum();
-        let affordable = budget / (ROWS * seconds.max(period));
-        let least = (least.0 * rate.min(PLENTY / seconds.max(period))).max(least.1);
-        let sharpest = corners.0.max(least).min(MOST * rate);
-        let corner = corners.1.min(affordable).max(least).min(MOST * rate);
-        let stride = |corner: f64| ((rate / (ROWS * corner)).round() as usize).max(1);
-        let parts = (sharpest / corner).min(SHARPER) as usize;
+        let seconds: f64 = uniform_trials.iter().map(|raw| raw.len() as f64 * raw.period).sum();
+        let affordable = budget / (ROWS_PER_CUTOFF_PERIOD * seconds.max(period));
+        let least = (least.0 * rate.min(AMPLE_ROWS / seconds.max(period))).max(least.1);
+        let sharpest = cutoffs_hz.0.max(least).min(MAX_CUTOFF_OVER_RATE * rate);
+        let cutoff_hz = cutoffs_hz.1.min(affordable).max(least).min(MAX_CUTOFF_OVER_RATE * rate);
+        let stride = |cutoff_hz: f64| ((rate / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)).round() as usize).max(1);
+        let parts = (sharpest / cutoff_hz).min(MAX_CASCADE_RATIO) as usize;
         if parts < 2 {
-            return Self::new(WIDTH / corner, period, stride(corner));
+            return Self::new(CUTOFF_TIMES_WIDTH / cutoff_hz, period, stride(cutoff_hz));
         }
-        Self::in_two(WIDTH / corner, period, stride(parts as f64 * corner), parts)
+        Self::cascaded(CUTOFF_TIMES_WIDTH / cutoff_hz, period, stride(parts as f64 * cutoff_hz), parts)
     }
 
     /// The same `times` less sharp, in one pass.
     #[must_use]
-    pub fn calmer(&self, times: f64) -> Self {
-        let corner = self.corner() / times;
-        let stride = ((1.0 / (self.period * ROWS * corner)).round() as usize).max(1);
-        Self::new(WIDTH / corner, self.period, stride)
+    pub fn with_lower_cutoff(&self, times: f64) -> Self {
+        let cutoff_hz = self.cutoff_hz() / times;
+        let stride = ((1.0 / (self.period * ROWS_PER_CUTOFF_PERIOD * cutoff_hz)).round() as usize).max(1);
+        Self::new(CUTOFF_TIMES_WIDTH / cutoff_hz, self.period, stride)
     }
 
-    /// A Gaussian of `blur` seconds in two passes: the first a part in `parts` as wide over rows of `period` seconds, looked
+    /// A Gaussian of `filter_width` seconds in two passes: the first a part in `parts` as wide over rows of `period` seconds, looked
     /// at every `stride` rows, the second over every `parts` of those.
     #[must_use]
-    pub fn in_two(blur: f64, period: f64, stride: usize, parts: usize) -> Self {
-        let first = Self::new(blur / parts as f64, period, stride);
-        let left = (blur * blur - first.blur * first.blur).sqrt();
+    pub fn cascaded(filter_width: f64, period: f64, stride: usize, parts: usize) -> Self {
+        let first = Self::new(filter_width / parts as f64, period, stride);
+        let left = (filter_width * filter_width - first.filter_width * first.filter_width).sqrt();
         let second = Self::new(left, first.step(), parts);
-        Self { passes: Some(Box::new(Passes { first, second })), ..Self::new(blur, period, stride * parts) }
+        Self {
+            passes: Some(Box::new(CascadedFilter { first, second })),
+            ..Self::new(filter_width, period, stride * parts)
+        }
     }
 
     /// The two passes it is made of, where laws act between them.
     #[must_use]
-    pub fn passes(&self) -> Option<&Passes> {
+    pub fn passes(&self) -> Option<&CascadedFilter> {
         self.passes.as_deref()
     }
 
@@ -174,25 +180,25 @@ impl Lens {
         self.passes().map_or(self, |passes| &passes.first)
     }
 
-    /// A Gaussian of `blur` seconds over rows of `period` seconds, looked at every `stride` rows.
+    /// A Gaussian of `filter_width` seconds over rows of `period` seconds, looked at every `stride` rows.
     #[must_use]
-    pub fn new(blur: f64, period: f64, stride: usize) -> Self {
-        let reach = (SUPPORT * blur / period).ceil().max(1.0) as usize;
-        let kernels = |shift: f64| Kernels::new(blur / period, reach, shift, period);
+    pub fn new(filter_width: f64, period: f64, stride: usize) -> Self {
+        let half_width_rows = (HALF_WIDTH_SIGMAS * filter_width / period).ceil().max(1.0) as usize;
+        let kernels = |shift: f64| FilterKernels::new(filter_width / period, half_width_rows, shift, period);
         let (plain, held) = (kernels(0.0), kernels(0.5));
         Self {
-            blur,
+            filter_width,
             stride,
             period,
-            reach,
+            half_width_rows,
             level: plain.level,
-            slope: plain.slope,
-            bend: plain.bend,
+            first_derivative: plain.first_derivative,
+            second_derivative: plain.second_derivative,
             jerk: plain.jerk,
             snap: plain.snap,
             crackle: plain.crackle,
             held: held.level,
-            held_slope: held.slope,
+            held_derivative: held.first_derivative,
             passes: None,
         }
     }
@@ -200,7 +206,7 @@ impl Lens {
     /// The same filter, every row kept.
     #[must_use]
     pub fn every_row(&self) -> Self {
-        Self::new(self.blur.max(0.6 * self.period), self.period, 1)
+        Self::new(self.filter_width.max(0.6 * self.period), self.period, 1)
     }
 
     /// Seconds between two rows of the analysis.
@@ -211,38 +217,39 @@ impl Lens {
 
     /// -3 dB frequency, Hz.
     #[must_use]
-    pub fn corner(&self) -> f64 {
-        WIDTH / self.blur
+    pub fn cutoff_hz(&self) -> f64 {
+        CUTOFF_TIMES_WIDTH / self.filter_width
     }
 
     /// Rows at either end, or beside a bad one, that the filter spoils.
     #[must_use]
-    pub fn reach(&self) -> usize {
-        self.reach
+    pub fn half_width_rows(&self) -> usize {
+        self.half_width_rows
     }
 
     /// What white noise of deviation one on the raw rows leaves in level, velocity and acceleration.
     #[must_use]
     pub fn noise(&self) -> [f64; 3] {
-        [&self.level, &self.slope, &self.bend].map(|kernel| kernel.iter().map(|tap| tap * tap).sum::<f64>().sqrt())
+        [&self.level, &self.first_derivative, &self.second_derivative]
+            .map(|kernel| kernel.iter().map(|tap| tap * tap).sum::<f64>().sqrt())
     }
 
     /// The smoothed values.
     #[must_use]
-    pub fn level(&self, values: &[f64]) -> Vec<f64> {
+    pub fn smooth(&self, values: &[f64]) -> Vec<f64> {
         self.through(&self.level, values)
     }
 
     /// Their first derivative.
     #[must_use]
-    pub fn slope(&self, values: &[f64]) -> Vec<f64> {
-        self.through(&self.slope, values)
+    pub fn first_derivative(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.first_derivative, values)
     }
 
     /// Their second derivative.
     #[must_use]
-    pub fn bend(&self, values: &[f64]) -> Vec<f64> {
-        self.through(&self.bend, values)
+    pub fn second_derivative(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.second_derivative, values)
     }
 
     /// Their third derivative.
@@ -265,24 +272,24 @@ impl Lens {
 
     /// The smoothed course of values that are held from their row to the next.
     #[must_use]
-    pub fn held(&self, values: &[f64]) -> Vec<f64> {
+    pub fn smooth_held(&self, values: &[f64]) -> Vec<f64> {
         self.through(&self.held, values)
     }
 
     /// Its first derivative.
     #[must_use]
-    pub fn held_slope(&self, values: &[f64]) -> Vec<f64> {
-        self.through(&self.held_slope, values)
+    pub fn held_derivative(&self, values: &[f64]) -> Vec<f64> {
+        self.through(&self.held_derivative, values)
     }
 
     fn through(&self, kernel: &[f64], values: &[f64]) -> Vec<f64> {
         let last = values.len() as isize - 1;
-        let reach = self.reach as isize;
+        let half_width_rows = self.half_width_rows as isize;
         (0..values.len())
             .step_by(self.stride)
             .map(|at| {
-                let from = at as isize - reach;
-                if from >= 0 && at as isize + reach <= last {
+                let from = at as isize - half_width_rows;
+                if from >= 0 && at as isize + half_width_rows <= last {
                     let piece = &values[from as usize..from as usize + kernel.len()];
                     return dot(kernel, piece);
                 }
@@ -294,21 +301,21 @@ impl Lens {
     }
 }
 
-fn effort_noise(raw: &Raw) -> f64 {
+fn effort_noise(raw: &UniformTrial) -> f64 {
     let rows = raw.effort.as_deref().unwrap_or_default();
     let size = (rows.iter().map(|effort| effort * effort).sum::<f64>() / rows.len().max(1) as f64).sqrt();
     raw.figures.effort.map_or(0.0, |effort| effort.noise).max(0.01 * size)
 }
 
 /// Greatest noise of position and force.
-fn noises(raws: &[Raw]) -> (f64, f64) {
-    let noise = |raw: &Raw| (raw.figures.position.noise, raw.figures.force.map_or(0.0, |force| force.noise));
-    raws.iter().map(noise).fold((0.0f64, 0.0f64), |a, b| (a.0.max(b.0), a.1.max(b.1)))
+fn sensor_noise(uniform_trials: &[UniformTrial]) -> (f64, f64) {
+    let noise = |raw: &UniformTrial| (raw.figures.position.noise, raw.figures.force.map_or(0.0, |force| force.noise));
+    uniform_trials.iter().map(noise).fold((0.0f64, 0.0f64), |a, b| (a.0.max(b.0), a.1.max(b.1)))
 }
 
 /// Taps of the third to the fifth derivative: the bell times the polynomials that are orthogonal, under it, to all lower ones.
 /// Hermite's are that only for a bell without an end.
-fn higher(bell: &[f64], places: &[f64], period: f64) -> [Vec<f64>; 3] {
+fn higher_derivatives(bell: &[f64], places: &[f64], period: f64) -> [Vec<f64>; 3] {
     let moment = |power: i32| bell.iter().zip(places).map(|(tap, x)| tap * x.powi(power)).sum::<f64>();
     let [none, second, fourth, sixth, eighth] = [0, 2, 4, 6, 8].map(moment);
     let square = (sixth * none - fourth * second) / (fourth * none - second * second);
@@ -328,21 +335,22 @@ fn higher(bell: &[f64], places: &[f64], period: f64) -> [Vec<f64>; 3] {
     ]
 }
 
-struct Kernels {
+struct FilterKernels {
     level: Vec<f64>,
-    slope: Vec<f64>,
-    bend: Vec<f64>,
+    first_derivative: Vec<f64>,
+    second_derivative: Vec<f64>,
     jerk: Vec<f64>,
     snap: Vec<f64>,
     crackle: Vec<f64>,
 }
 
-impl Kernels {
+impl FilterKernels {
     /// Taps for rows -reach..=reach, each of which lies `shift` rows later than its number says. Exact for polynomials,
     /// however coarse the rows: level of 1 and x, slope of x, bend of x^2 come out as they should, jerk, snap and crackle of
     /// all up to x^4, x^5 and x^6 where nothing is shifted.
-    fn new(width: f64, reach: usize, shift: f64, period: f64) -> Self {
-        let places: Vec<f64> = (0..=2 * reach).map(|tap| tap as f64 - reach as f64 + shift).collect();
+    fn new(width: f64, half_width_rows: usize, shift: f64, period: f64) -> Self {
+        let places: Vec<f64> =
+            (0..=2 * half_width_rows).map(|tap| tap as f64 - half_width_rows as f64 + shift).collect();
         let bell: Vec<f64> = places.iter().map(|x| (-0.5 * (x / width).powi(2)).exp()).collect();
         let total: f64 = bell.iter().sum();
         let moment =
@@ -351,14 +359,14 @@ impl Kernels {
         let level: Vec<f64> = bell.iter().map(|tap| tap / total).collect();
         let odd: Vec<f64> = bell.iter().zip(&places).map(|(tap, x)| tap * (x - mean)).collect();
         let rise = moment(&odd, 1) * period;
-        let slope = odd.iter().map(|tap| tap / rise).collect();
+        let first_derivative = odd.iter().map(|tap| tap / rise).collect();
         let spread = moment(&level, 2) - mean * mean;
         let even: Vec<f64> = level.iter().zip(&places).map(|(tap, x)| tap * ((x - mean).powi(2) - spread)).collect();
         let curve = 0.5 * moment(&even, 2) * period * period;
-        let bend = even.iter().map(|tap| tap / curve).collect();
+        let second_derivative = even.iter().map(|tap| tap / curve).collect();
         // A bell that lies between the rows has its mean a little beside zero: tilted, it has it there.
         let level = level.iter().zip(&places).map(|(tap, x)| tap * (1.0 - mean * (x - mean) / spread)).collect();
-        let [jerk, snap, crackle] = higher(&bell, &places, period);
-        Self { level, slope, bend, jerk, snap, crackle }
+        let [jerk, snap, crackle] = higher_derivatives(&bell, &places, period);
+        Self { level, first_derivative, second_derivative, jerk, snap, crackle }
     }
 }

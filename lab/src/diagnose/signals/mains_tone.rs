@@ -1,25 +1,25 @@
 //! A tone of the mains in the force, before anything is smoothed: it is no noise, and a filter that ends below it hides it.
 
-use super::uniform_trial::Raw;
+use super::uniform_trial::UniformTrial;
 
 /// Frequencies of mains, Hz.
-const MAINS: [f64; 2] = [50.0, 60.0];
+const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 
 /// Share by which mains may be off their frequency.
-const OFF: f64 = 0.004;
+const MAINS_FREQUENCY_TOLERANCE: f64 = 0.004;
 
 /// Share within which the rest of the spectrum is what the tone is held against.
-const AROUND: f64 = 0.06;
+const BACKGROUND_FRACTION: f64 = 0.06;
 
 /// Power of a tone over the mean around it. Noise comes to it once in e^40 frequencies.
-const LOUD: f64 = 40.0;
+const TONE_POWER_RATIO: f64 = 40.0;
 
 /// Fewest turns of the mains that tell a tone.
-const TURNS: f64 = 40.0;
+const MIN_CYCLES: f64 = 40.0;
 
 /// A tone in one trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tone {
+pub struct MainsTone {
     /// Hz.
     pub frequency: f64,
     /// Part that goes with the sine of the time since the first row.
@@ -28,7 +28,7 @@ pub struct Tone {
     pub cosine: f64,
 }
 
-impl Tone {
+impl MainsTone {
     /// Its value `time` seconds after the first row.
     #[must_use]
     pub fn at(&self, time: f64) -> f64 {
@@ -39,34 +39,34 @@ impl Tone {
 
 /// The tone of the mains in the force of `raw`, where one stands out.
 #[must_use]
-pub fn heard(raw: &Raw) -> Option<Tone> {
+pub fn detect(raw: &UniformTrial) -> Option<MainsTone> {
     let force = raw.force.as_ref()?;
     let seconds = force.len() as f64 * raw.period;
-    let within = |mains: &f64| *mains < 0.4 / raw.period && mains * seconds > TURNS;
-    let tones = MAINS.into_iter().filter(within).filter_map(|mains| stands_out(raw, force, mains, seconds));
+    let within = |mains: &f64| *mains < 0.4 / raw.period && mains * seconds > MIN_CYCLES;
+    let tones = MAINS_HZ.into_iter().filter(within).filter_map(|mains| stands_out(raw, force, mains, seconds));
     tones.max_by(|a, b| (a.sine.hypot(a.cosine)).total_cmp(&b.sine.hypot(b.cosine)))
 }
 
 /// The loudest tone near `mains`, if it is far above what lies around.
-fn stands_out(raw: &Raw, force: &[f64], mains: f64, seconds: f64) -> Option<Tone> {
+fn stands_out(raw: &UniformTrial, force: &[f64], mains: f64, seconds: f64) -> Option<MainsTone> {
     let apart = 0.25 / seconds;
-    let half = (OFF * mains / apart).ceil() as i32;
-    let near: Vec<Tone> = (-half..=half).map(|step| tone(raw, force, mains + f64::from(step) * apart)).collect();
+    let half = (MAINS_FREQUENCY_TOLERANCE * mains / apart).ceil() as i32;
+    let near: Vec<MainsTone> = (-half..=half).map(|step| tone(raw, force, mains + f64::from(step) * apart)).collect();
     let best = near.into_iter().max_by(|a, b| power(a).total_cmp(&power(b)))?;
     // As far from the tone as its own skirts reach, and no farther than the spectrum of a motion stays alike.
-    let around = (2..=8).map(|step| f64::from(step) / 8.0 * AROUND * mains);
+    let around = (2..=8).map(|step| f64::from(step) / 8.0 * BACKGROUND_FRACTION * mains);
     let around: Vec<f64> =
         around.flat_map(|away| [mains - away, mains + away]).map(|at| power(&tone(raw, force, at))).collect();
     let mean = around.iter().sum::<f64>() / around.len() as f64;
-    (power(&best) > LOUD * mean).then_some(best)
+    (power(&best) > TONE_POWER_RATIO * mean).then_some(best)
 }
 
-fn power(tone: &Tone) -> f64 {
+fn power(tone: &MainsTone) -> f64 {
     tone.sine.powi(2) + tone.cosine.powi(2)
 }
 
 /// Part of `force` at `frequency`, under a window that has no edges.
-fn tone(raw: &Raw, force: &[f64], frequency: f64) -> Tone {
+fn tone(raw: &UniformTrial, force: &[f64], frequency: f64) -> MainsTone {
     // Each row's angles are turned on from the row's before.
     let turn = (std::f64::consts::TAU * frequency * raw.period).sin_cos();
     let slow = (std::f64::consts::TAU / force.len() as f64).sin_cos();
@@ -81,7 +81,7 @@ fn tone(raw: &Raw, force: &[f64], frequency: f64) -> Tone {
         weights += weight;
         (fast, window) = (turned(fast, turn), turned(window, slow));
     }
-    Tone { frequency, sine: 2.0 * sine / weights, cosine: 2.0 * cosine / weights }
+    MainsTone { frequency, sine: 2.0 * sine / weights, cosine: 2.0 * cosine / weights }
 }
 
 #[cfg(test)]
@@ -96,7 +96,7 @@ mod tests {
     const RATE: f64 = 1000.0;
 
     /// Twenty seconds of noise of deviation one beside a motion that shows in the force, and `amplitude` of 60.03 Hz.
-    fn noisy(amplitude: f64) -> Raw {
+    fn noisy(amplitude: f64) -> UniformTrial {
         let mut chance = ChaCha8Rng::seed_from_u64(7);
         let force = (0..20_000).map(|row| {
             let time = f64::from(row) / RATE;
@@ -106,7 +106,7 @@ mod tests {
             press + noise + amplitude * (std::f64::consts::TAU * 60.03 * time + 0.4).sin()
         });
         let force: Vec<f64> = force.collect();
-        Raw {
+        UniformTrial {
             name: "noise".to_owned(),
             origin: 0.0,
             period: 1.0 / RATE,
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_tone_of_a_third_of_the_noise_is_heard_and_measured() {
-        let tone = heard(&noisy(0.33)).unwrap();
+        let tone = detect(&noisy(0.33)).unwrap();
         // White noise leaves a deviation of sqrt(2 / 20000) under a window that costs a half more, and the grid is an eightieth of
         // a hertz.
         assert!((tone.sine.hypot(tone.cosine) - 0.33).abs() < 4.0 * 0.0123, "{tone:?}");
@@ -133,6 +133,6 @@ mod tests {
 
     #[test]
     fn where_there_is_none_none_is_heard() {
-        assert_eq!(heard(&noisy(0.0)), None);
+        assert_eq!(detect(&noisy(0.0)), None);
     }
 }

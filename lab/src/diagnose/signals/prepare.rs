@@ -2,9 +2,9 @@
 
 use anyhow::{Result, ensure};
 
-use super::bandwidth::lenses;
+use super::bandwidth::analysis_filters;
 use super::mains_tone;
-use super::uniform_trial::Raw;
+use super::uniform_trial::UniformTrial;
 use crate::error::{InputError, UsageError};
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -14,36 +14,39 @@ use crate::sensors::Figures;
 ///
 /// # Errors
 /// No channel that the rig predicts and every trial holds, or trials too short to tell anything.
-pub fn sensed(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Vec<Raw>> {
+pub fn sensed(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Vec<UniformTrial>> {
     ensure_usable(rig, trials, origin)?;
     let period = common_period(trials);
-    Ok(trials.iter().map(|trial| listened(rig, Raw::of(trial, Figures::of(rig, trial), period), trial)).collect())
+    Ok(trials
+        .iter()
+        .map(|trial| without_mains_tone(rig, UniformTrial::of(trial, Figures::of(rig, trial), period), trial))
+        .collect())
 }
 
 /// `raw` of `trial`, its figures told without a tone of the mains, which is no noise.
-fn listened(rig: &Rig, raw: Raw, trial: &Recording) -> Raw {
-    let Some(tone) = mains_tone::heard(&raw) else { return raw };
+fn without_mains_tone(rig: &Rig, raw: UniformTrial, trial: &Recording) -> UniformTrial {
+    let Some(tone) = mains_tone::detect(&raw) else { return raw };
     let mut quiet = trial.clone();
     if let Some(force) = &mut quiet.force {
         force.iter_mut().zip(&trial.time).for_each(|(force, time)| *force -= tone.at(time - raw.origin));
     }
-    Raw { figures: Figures::of(rig, &quiet), hum: Some(tone.frequency), ..raw }
+    UniformTrial { figures: Figures::of(rig, &quiet), hum: Some(tone.frequency), ..raw }
 }
 
 /// Rows that are looked at, a period of the sharpest filter's -3 dB frequency: their mean takes 0.4 % there, of all channels
 /// alike.
-const ENOUGH: f64 = 20.0;
+const ROWS_PER_CUTOFF_PERIOD: f64 = 20.0;
 
-/// `raws` at a rate that the filters need: twins of a million rows would show nothing that those of their means do not.
-pub fn afforded(rig: &Rig, raws: Vec<Raw>) -> Vec<Raw> {
-    let (contact, drive) = lenses(rig, &raws);
-    let corner = contact.first().corner().max(drive.first().corner());
-    let parts = raws.first().map_or(1.0, |raw| 1.0 / (raw.period * ENOUGH * corner)) as usize;
+/// `uniform_trials` at a rate that the filters need: twins of a million rows would show nothing that those of their means do not.
+pub fn decimate_to_need(rig: &Rig, uniform_trials: Vec<UniformTrial>) -> Vec<UniformTrial> {
+    let (contact, drive) = analysis_filters(rig, &uniform_trials);
+    let corner = contact.first().cutoff_hz().max(drive.first().cutoff_hz());
+    let parts = uniform_trials.first().map_or(1.0, |raw| 1.0 / (raw.period * ROWS_PER_CUTOFF_PERIOD * corner)) as usize;
     if parts < 3 {
-        return raws;
+        return uniform_trials;
     }
     let odd = parts - 1 + parts % 2;
-    raws.iter().map(|raw| raw.thinned(odd)).collect()
+    uniform_trials.iter().map(|raw| raw.thinned(odd)).collect()
 }
 
 /// The longest period of `trials`, s.
@@ -53,7 +56,7 @@ pub fn common_period(trials: &[Recording]) -> f64 {
 }
 
 /// Fewest rows of a trial: below them no filter has settled.
-const FEWEST_ROWS: usize = 32;
+const MIN_TRIAL_ROWS: usize = 32;
 
 /// Refuses trials that nothing can be told of.
 ///
@@ -61,9 +64,9 @@ const FEWEST_ROWS: usize = 32;
 /// No trial, a trial of a few rows, or none of the rig's channels in them.
 pub fn ensure_usable(rig: &Rig, trials: &[Recording], origin: &str) -> Result<()> {
     ensure!(!trials.is_empty(), UsageError::new("TRIAL.csv", "none", "at least one recording"));
-    if let Some(short) = trials.iter().find(|trial| trial.time.len() < FEWEST_ROWS) {
+    if let Some(short) = trials.iter().find(|trial| trial.time.len() < MIN_TRIAL_ROWS) {
         let found = format!("{} rows", short.time.len());
-        let expected = format!("at least {FEWEST_ROWS}, and some hundreds to tell much");
+        let expected = format!("at least {MIN_TRIAL_ROWS}, and some hundreds to tell much");
         anyhow::bail!(InputError::new(&short.name, found, expected));
     }
     let has = |pick: &dyn Fn(&Recording) -> bool| trials.iter().all(pick);

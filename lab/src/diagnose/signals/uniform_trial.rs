@@ -1,12 +1,12 @@
 //! A trial on an even clock, as the analysis takes it in.
 
-use super::dequantize::unround;
+use super::dequantize::dequantize;
 use crate::recording::Recording;
 use crate::sensors::Figures;
 
 /// A trial on an even clock. All columns are of equal length.
 #[derive(Debug, Clone)]
-pub struct Raw {
+pub struct UniformTrial {
     /// File name.
     pub name: String,
     /// Time of the first row, as recorded.
@@ -32,12 +32,12 @@ pub struct Raw {
 }
 
 /// Lengths of a gap until its end is trusted again: what happened in it nobody saw, and a contact remembers.
-const REMEMBERED: f64 = 3.0;
+const GAP_RECOVERY_LENGTHS: f64 = 3.0;
 
 /// Periods without a row that make a gap.
-const GAP: f64 = 3.5;
+const GAP_PERIODS: f64 = 3.5;
 
-impl Raw {
+impl UniformTrial {
     /// Brings `recording` onto a clock of `period` seconds by straight lines between its rows.
     #[must_use]
     pub fn of(recording: &Recording, figures: Figures, period: f64) -> Self {
@@ -46,7 +46,7 @@ impl Raw {
         let length = time.last().copied().unwrap_or(0.0) - origin;
         let rows = (length / period + 0.5).floor() as usize + 1;
         let own = recording.period();
-        let gaps = time.windows(2).filter(|pair| pair[1] - pair[0] > GAP * own.max(period));
+        let gaps = time.windows(2).filter(|pair| pair[1] - pair[0] > GAP_PERIODS * own.max(period));
         let gaps: Vec<_> = gaps.map(|pair| (pair[0] - origin, pair[1] - pair[0])).collect();
         let mut bad = vec![false; time.len()];
         let mut columns = [Some(&recording.position), recording.force.as_ref(), recording.effort.as_ref()]
@@ -56,13 +56,13 @@ impl Raw {
             mend(time, column, &mut bad);
         }
         if let Some(position) = &mut columns[0] {
-            unround(|row| time[row], position, figures.position.resolution);
+            dequantize(|row| time[row], position, figures.position.resolution);
         }
         let dropouts = bad.iter().zip(time).filter(|(bad, _)| **bad).map(|(_, at)| at - origin).collect();
         let mut good = vec![true; rows];
         for (start, span) in &gaps {
             let (from, to) =
-                ((start / period).ceil() as usize, ((start + REMEMBERED * span) / period).floor() as usize);
+                ((start / period).ceil() as usize, ((start + GAP_RECOVERY_LENGTHS * span) / period).floor() as usize);
             good[from.min(rows)..(to + 1).clamp(from.min(rows), rows)].fill(false);
         }
         let [position, force, effort] =
@@ -163,9 +163,9 @@ mod tests {
     use super::*;
     use crate::sensors::Channel;
 
-    fn raw(rows: usize, figures: Channel) -> Raw {
+    fn raw(rows: usize, figures: Channel) -> UniformTrial {
         let line = |first: f64| (0..rows).map(|row| first + row as f64).collect::<Vec<f64>>();
-        Raw {
+        UniformTrial {
             name: "a line".to_owned(),
             origin: 2.0,
             period: 0.5,
@@ -201,8 +201,8 @@ mod tests {
     fn rounding_falls_with_the_root_where_noise_shakes_the_reading_and_stays_where_it_does_not() {
         let shaken = raw(50, Channel { resolution: 0.1, noise: 1.0 }).thinned(25).figures.position;
         assert_eq!((shaken.resolution, shaken.noise), (0.1 / 5.0, 0.2));
-        let still = raw(50, Channel { resolution: 1.0, noise: 1.0 / 12f64.sqrt() }).thinned(25).figures.position;
-        assert_eq!(still.resolution, 1.0);
-        assert!((still.noise - 1.0 / 12f64.sqrt()).abs() < 1e-12, "{}", still.noise);
+        let at_rest = raw(50, Channel { resolution: 1.0, noise: 1.0 / 12f64.sqrt() }).thinned(25).figures.position;
+        assert_eq!(at_rest.resolution, 1.0);
+        assert!((at_rest.noise - 1.0 / 12f64.sqrt()).abs() < 1e-12, "{}", at_rest.noise);
     }
 }

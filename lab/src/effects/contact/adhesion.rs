@@ -1,16 +1,18 @@
 //! A surface that holds on.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct Adhesion;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "adhesion",
     place: Place::Contact,
     stage: Stage::Limit,
-    most: 1,
+    max_instances: 1,
     statement: "On leaving, the surface holds on to the tool and pulls before it lets go",
     forms: &[
         Form {
@@ -57,11 +59,11 @@ static CARD: Card = Card {
 };
 
 impl Effect for Adhesion {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         if scene.releases == 0 {
             return Vec::new();
         }
@@ -76,7 +78,7 @@ impl Effect for Adhesion {
         heights.map(|height| Start::sized(&[force, height], &[0])).collect()
     }
 
-    fn touch(&self, form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
         if touch.bilateral {
             return;
         }

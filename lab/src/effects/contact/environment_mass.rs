@@ -1,19 +1,21 @@
 //! Something that has to be carried along.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct EnvironmentMass;
 
 const MOVED_MASS: Parameter =
     Parameter::new("moved_mass", Word::new("kg", "kg m^2"), "mass that moves along", 0.0, f64::INFINITY);
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "environment_mass",
     place: Place::Contact,
     stage: Stage::Law,
-    most: 1,
+    max_instances: 1,
     statement: "What is touched has a mass of its own that moves along with the tool",
     forms: &[
         Form { name: "carried", equation: "F = K x + B v + moved_mass a, in contact only", parameters: &[MOVED_MASS] },
@@ -38,15 +40,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for EnvironmentMass {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let mass = 0.05 * scene.force / scene.acceleration.max(f64::MIN_POSITIVE);
         if form == 0 {
             return vec![Start::sized(&[mass], &[0])];
@@ -57,7 +59,7 @@ impl Effect for EnvironmentMass {
         [0.03, 0.1, 0.3].iter().map(|part| Start::sized(&[mass, part * scene.depth], &[0])).collect()
     }
 
-    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
         if form == 0 {
             touch.extra += values[0] * touch.acceleration * touch.inside;
         } else if touch.depth > 0.0 && values[1] > 0.0 {

@@ -1,16 +1,18 @@
 //! Damping that grows with depth.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct HuntCrossleyDamping;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "hunt_crossley_damping",
     place: Place::Contact,
     stage: Stage::Law,
-    most: 1,
+    max_instances: 1,
     statement: "The damping is not constant: it grows with depth, from nothing at the surface",
     forms: &[
         Form {
@@ -46,15 +48,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for HuntCrossleyDamping {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let growth = 0.1 * scene.stiffness / scene.speed.max(f64::MIN_POSITIVE);
         if form == 0 {
             return vec![Start::sized(&[growth], &[0])];
@@ -63,7 +65,7 @@ impl Effect for HuntCrossleyDamping {
         [0.5, 1.5, 2.0].iter().map(|exponent| Start::sized(&[there, *exponent, scene.depth], &[0])).collect()
     }
 
-    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
         let depth = touch.depth.abs();
         touch.extra += touch.rate
             * if form == 0 {

@@ -1,9 +1,11 @@
 //! A loop that does not ask how fast.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch, geometric};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct Hysteresis;
 
 const LOOP_FORCE: Parameter =
@@ -16,11 +18,11 @@ const YIELD_DEPTH: Parameter = Parameter::new(
     f64::INFINITY,
 );
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "hysteresis",
     place: Place::Contact,
     stage: Stage::Law,
-    most: 1,
+    max_instances: 1,
     statement: "The force going in is larger than coming out, however slowly the tool moves",
     forms: &[
         Form {
@@ -53,12 +55,12 @@ static CARD: Card = Card {
 };
 
 impl Effect for Hysteresis {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
-        if !scene.comes_back() {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
+        if !scene.has_unloading() {
             return Vec::new();
         }
         let size = 0.05 * scene.stiffness * scene.depth;
@@ -71,7 +73,7 @@ impl Effect for Hysteresis {
         travels.iter().map(start).collect()
     }
 
-    fn touch(&self, form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
         // memory: depth an instant ago, z of each spring.
         let moved = touch.depth - memory[0];
         memory[0] = touch.depth;
@@ -91,12 +93,12 @@ impl Effect for Hysteresis {
                 memory[1]
             }
             _ => {
-                let middle = 0.5 * (SPRINGS - 1) as f64;
-                for (at, spring) in memory[1..=SPRINGS].iter_mut().enumerate() {
+                let middle = 0.5 * (JENKIN_ELEMENTS - 1) as f64;
+                for (at, spring) in memory[1..=JENKIN_ELEMENTS].iter_mut().enumerate() {
                     let reach = travel * values[2].powf((at as f64 - middle) / middle);
                     *spring = (*spring + moved / reach).clamp(-1.0, 1.0);
                 }
-                memory[1..=SPRINGS].iter().sum::<f64>() / SPRINGS as f64
+                memory[1..=JENKIN_ELEMENTS].iter().sum::<f64>() / JENKIN_ELEMENTS as f64
             }
         };
         touch.extra += values[0] * strain * touch.inside;
@@ -104,14 +106,14 @@ impl Effect for Hysteresis {
 }
 
 /// Springs of a bundle.
-const SPRINGS: usize = 5;
+const JENKIN_ELEMENTS: usize = 5;
 
 /// Strain after a way of `moved` yield depths.
 fn bouc_wen(mut strain: f64, moved: f64, sharpness: f64) -> f64 {
-    if moved.abs() > MOST_YIELDS {
+    if moved.abs() > SATURATION_YIELDS {
         return moved.signum();
     }
-    let steps = (moved.abs() / STEP).ceil().max(1.0);
+    let steps = (moved.abs() / YIELDS_PER_STEP).ceil().max(1.0);
     for _ in 0..steps as usize {
         let into = if moved * strain > 0.0 { strain.abs().powf(sharpness) } else { 0.0 };
         strain = (strain + moved / steps * (1.0 - into)).clamp(-1.0, 1.0);
@@ -120,7 +122,7 @@ fn bouc_wen(mut strain: f64, moved: f64, sharpness: f64) -> f64 {
 }
 
 /// Yield depths beyond which nothing of the state before is left.
-const MOST_YIELDS: f64 = 12.0;
+const SATURATION_YIELDS: f64 = 12.0;
 
 /// Yield depths of one step of the integration.
-const STEP: f64 = 0.2;
+const YIELDS_PER_STEP: f64 = 0.2;

@@ -1,9 +1,12 @@
 //! A second layer under the first.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch, linear, ramp, rounded};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, linear, ramp,
+    rounded,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct LayeredStiffness;
 
 const ADDED_STIFFNESS: Parameter = Parameter::new(
@@ -17,11 +20,11 @@ const ADDED_STIFFNESS: Parameter = Parameter::new(
 const LAYER_DEPTH: Parameter =
     Parameter::new("layer_depth", Word::new("m", "rad"), "depth of the boundary", 0.0, f64::INFINITY);
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "layered_stiffness",
     place: Place::Contact,
     stage: Stage::Law,
-    most: 1,
+    max_instances: 1,
     statement: "From a certain depth on, the tool presses on something else",
     forms: &[
         Form {
@@ -51,15 +54,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for LayeredStiffness {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let depths = linear(0.15, 0.9, 8).into_iter().map(|part| part * scene.depth);
         let added = 0.1 * scene.stiffness;
         if form == 0 {
@@ -68,7 +71,7 @@ impl Effect for LayeredStiffness {
         depths.map(|depth| Start::sized(&[added, depth, 0.05 * scene.depth], &[0])).collect()
     }
 
-    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
         if form == 1 {
             let transition = values[2].max(f64::MIN_POSITIVE);
             let rest = rounded(-values[1], transition);
@@ -76,7 +79,7 @@ impl Effect for LayeredStiffness {
             touch.spring += values[0] * beyond.copysign(touch.depth);
             return;
         }
-        let width = touch.velocity.abs() * touch.blur;
+        let width = touch.velocity.abs() * touch.filter_width;
         let beyond = if touch.bilateral {
             touch.position.signum() * ramp(touch.position.abs() - values[1], width)
         } else {

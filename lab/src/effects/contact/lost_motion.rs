@@ -1,17 +1,19 @@
 //! Play between the position sensor and the surface.
 
-use crate::effects::touch::{gate, ramp};
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch, geometric};
+use crate::effects::contact_state::{gate, ramp};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct LostMotion;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "lost_motion",
     place: Place::Contact,
     stage: Stage::Geometry,
-    most: 1,
+    max_instances: 1,
     statement: "After each reversal the sensor moves a little way before the tip does",
     forms: &[Form {
         name: "play",
@@ -24,18 +26,18 @@ static CARD: Card = Card {
 };
 
 impl Effect for LostMotion {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
-        if !scene.comes_back() {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
+        if !scene.has_unloading() {
             return Vec::new();
         }
         geometric(0.003 * scene.depth, 0.8 * scene.depth, 8).iter().map(|play| Start::at(&[*play])).collect()
     }
 
-    fn touch(&self, _form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, _form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
         // memory: tip position, whether it is known, sensor position an instant ago, where the tip last rested, velocity an
         // instant ago.
         let half = 0.5 * values[0];
@@ -50,7 +52,7 @@ impl Effect for LostMotion {
             memory[3] = memory[0];
         }
         memory[4] = touch.velocity;
-        if touch.blur > 0.0 {
+        if touch.filter_width > 0.0 {
             follow(half, memory[3], touch);
             return;
         }
@@ -64,8 +66,8 @@ impl Effect for LostMotion {
 
 /// A tip that rested at `rest` until the play of `half` either way was taken up, as a smoothed motion shows it: the velocity
 /// does not jump there but rises over the blur. A blur longer than the play takes is all of the play, so that none is off.
-fn follow(half: f64, rest: f64, touch: &mut Touch) {
-    let width = (touch.velocity.abs() * touch.blur).min(half);
+fn follow(half: f64, rest: f64, touch: &mut ContactState) {
+    let width = (touch.velocity.abs() * touch.filter_width).min(half);
     let way = touch.velocity.signum();
     let taken = way * (touch.position - rest) - half;
     touch.position = rest + way * ramp(taken, width);

@@ -1,18 +1,20 @@
 //! A spring that is not straight.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct NonlinearStiffness;
 
 const METRE: Word = Word::new("m", "rad");
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "nonlinear_stiffness",
     place: Place::Contact,
     stage: Stage::Law,
-    most: 1,
+    max_instances: 1,
     statement: "The deeper the tool goes, the stiffness itself changes",
     forms: &[
         Form {
@@ -58,11 +60,11 @@ static CARD: Card = Card {
 };
 
 impl Effect for NonlinearStiffness {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         if form == 0 {
             let exponents = [0.6, 0.8, 1.2, 1.5, 2.0, 2.8, 4.0];
             return exponents.iter().map(|exponent| Start::at(&[*exponent, scene.depth])).collect();
@@ -74,7 +76,7 @@ impl Effect for NonlinearStiffness {
         vec![Start::sized(&[0.1 * scene.stiffness / scene.depth.powi(2)], &[0])]
     }
 
-    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
         let depth = touch.depth.abs();
         if form == 0 {
             let (exponent, reference) = (values[0], values[1]);
@@ -84,11 +86,11 @@ impl Effect for NonlinearStiffness {
         } else if form == 1 {
             touch.spring += values[0] * touch.depth * depth * depth;
         } else if values[0] > 0.0 {
-            let growth = (values[0] * depth).min(MOST_GROWTH);
+            let growth = (values[0] * depth).min(MAX_EXPONENT);
             touch.spring = (touch.stiffness * growth.exp_m1() / values[0]).copysign(touch.depth);
         }
     }
 }
 
 /// Exponent beyond which no force is left to tell: a search may try anything.
-const MOST_GROWTH: f64 = 60.0;
+const MAX_EXPONENT: f64 = 60.0;

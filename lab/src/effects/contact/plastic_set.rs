@@ -1,16 +1,18 @@
 //! A dent that stays.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct PlasticSet;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "plastic_set",
     place: Place::Contact,
     stage: Stage::Depth,
-    most: 1,
+    max_instances: 1,
     statement: "The surface keeps a dent: it springs back only part of the way",
     forms: &[
         Form {
@@ -45,12 +47,12 @@ static CARD: Card = Card {
 };
 
 impl Effect for PlasticSet {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
-        if !scene.comes_back() {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
+        if !scene.has_unloading() {
             return Vec::new();
         }
         let ratios = [0.02, 0.1, 0.3, 0.6, 0.85];
@@ -64,7 +66,7 @@ impl Effect for PlasticSet {
             .collect()
     }
 
-    fn touch(&self, form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
         let spared = if form == 0 { 0.0 } else { values[1] };
         memory[0] = memory[0].max(touch.position);
         let dent = values[0] * (memory[0] - spared).max(0.0);

@@ -1,16 +1,18 @@
 //! Damping that grows with speed.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Scene, Stage, Start, Touch};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct QuadraticDamping;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "quadratic_damping",
     place: Place::Contact,
     stage: Stage::Law,
-    most: 1,
+    max_instances: 1,
     statement: "The damping grows with speed, as in a liquid that is pushed aside",
     forms: &[
         Form {
@@ -46,15 +48,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for QuadraticDamping {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let speed = scene.speed.max(f64::MIN_POSITIVE);
         let drag = 0.1 * scene.stiffness * scene.depth;
         if form == 0 {
@@ -63,7 +65,7 @@ impl Effect for QuadraticDamping {
         [1.5, 1.8, 2.2, 3.0].iter().map(|exponent| Start::sized(&[drag, *exponent, speed], &[0])).collect()
     }
 
-    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
         let speed = touch.velocity.abs();
         touch.extra += touch.rate
             * if form == 0 {

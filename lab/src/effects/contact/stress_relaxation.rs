@@ -1,19 +1,22 @@
 //! A force that fades while the tool is held.
 
-use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Scene, Stage, Start, Touch, geometric};
+use crate::effects::{
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
+    geometric,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct StressRelaxation;
 
 const STIFFNESS: Word = Word::new("N/m", "N m/rad");
 const SECOND: Word = Word::same("s");
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "stress_relaxation",
     place: Place::Contact,
     stage: Stage::Law,
-    most: 3,
+    max_instances: 3,
     statement: "Held at one depth, the force fades: part of the stiffness relaxes with time",
     forms: &[Form {
         name: "one_branch",
@@ -21,7 +24,7 @@ static CARD: Card = Card {
         parameters: &[
             Parameter::new("branch_stiffness", STIFFNESS, "stiffness that fades", 0.0, f64::INFINITY),
             Parameter::new("relaxation_time", SECOND, "time in which it fades to 37 %", 0.0, f64::INFINITY)
-                .within(Limit::Step),
+                .within(Limit::ResolvableTime),
         ],
     }],
     excited_by: "holds after a quick approach; two or more frequencies",
@@ -30,17 +33,17 @@ static CARD: Card = Card {
 };
 
 impl Effect for StressRelaxation {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let size = 0.2 * scene.stiffness;
         let times = geometric(2.0 * scene.step, scene.duration, 10);
         times.iter().map(|time| Start::sized(&[size, *time], &[0])).collect()
     }
 
-    fn touch(&self, _form: usize, values: &[f64], memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, _form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
         // memory: depth an instant ago, whether there was one, then the branch.
         let moved = if memory[1] == 0.0 { 0.0 } else { touch.depth - memory[0] };
         (memory[0], memory[1]) = (touch.depth, 1.0);

@@ -3,20 +3,21 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, Card, Effect, Form, Limit, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight,
+    Abscissa, ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter,
+    Place, Stage, Start, ToneWeight,
 };
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct SurfaceMotion;
 
 const METRE: Word = Word::new("m", "rad");
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "surface_motion",
     place: Place::Contact,
     stage: Stage::Geometry,
-    most: 1,
+    max_instances: 1,
     statement: "What is touched moves by itself, as a breathing patient does",
     forms: &[
         Form {
@@ -25,7 +26,8 @@ static CARD: Card = Card {
             parameters: &[
                 Parameter::new("sine", METRE, "part of the motion", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
                 Parameter::new("cosine", METRE, "part of the motion", f64::NEG_INFINITY, f64::INFINITY).each_trial(),
-                Parameter::new("frequency", Word::same("Hz"), "of the motion", 0.0, f64::INFINITY).within(Limit::Turns),
+                Parameter::new("frequency", Word::same("Hz"), "of the motion", 0.0, f64::INFINITY)
+                    .within(Limit::RepeatedCycles),
             ],
         },
         Form {
@@ -46,21 +48,25 @@ static CARD: Card = Card {
 };
 
 impl Effect for SurfaceMotion {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let size = 0.01 * scene.depth;
-        if form == 0 || !scene.tells_time() { Vec::new() } else { vec![Start::sized(&[size / scene.duration], &[0])] }
+        if form == 0 || !scene.separates_time_from_depth() {
+            Vec::new()
+        } else {
+            vec![Start::sized(&[size / scene.duration], &[0])]
+        }
     }
 
-    fn tones(&self, form: usize, scene: &Scene) -> Option<Tones> {
+    fn frequency_search(&self, form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
         // Half a turn a trial apart, up to a few Hz or what the analysis resolves: nothing falls between two of them.
         let most = (8.0 * scene.duration).min(0.1 * scene.duration / scene.step).clamp(2.0, 400.0);
-        (form == 0 && scene.tells_time()).then(|| Tones {
+        (form == 0 && scene.separates_time_from_depth()).then(|| FrequencySearch {
             abscissa: Abscissa::Time,
-            weight: Weight::Inside,
+            weight: ToneWeight::Inside,
             frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, (2.0 * most) as usize)],
             size: 0.01 * scene.depth,
             harmonics: 1,
@@ -68,7 +74,7 @@ impl Effect for SurfaceMotion {
         })
     }
 
-    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
         let (moved, rate) = if form == 0 {
             let pulse = TAU * values[2];
             let (sine, cosine) = (pulse * touch.time).sin_cos();

@@ -3,22 +3,22 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, Card, Effect, Form, Limit, Memory, Parameter, Place, Scene, Stage, Start, Tones, Touch, Weight, gate,
-    geometric, linear,
+    Abscissa, ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter,
+    Place, Stage, Start, ToneWeight, gate, geometric, linear,
 };
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct TimeVaryingStiffness;
 
 const CHANGE: Parameter = Parameter::new("change", Word::same("1"), "change of K over K at the start", -0.98, 50.0);
 const SECOND: Word = Word::same("s");
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "time_varying_stiffness",
     place: Place::Contact,
     stage: Stage::Depth,
-    most: 1,
+    max_instances: 1,
     statement: "The same depth does not give the same force later: the stiffness changes with time",
     forms: &[
         Form {
@@ -48,7 +48,8 @@ static CARD: Card = Card {
             parameters: &[
                 Parameter::new("sine", Word::same("1"), "part of the change", -0.98, 0.98).each_trial(),
                 Parameter::new("cosine", Word::same("1"), "part of the change", -0.98, 0.98).each_trial(),
-                Parameter::new("frequency", Word::same("Hz"), "of the change", 0.0, f64::INFINITY).within(Limit::Turns),
+                Parameter::new("frequency", Word::same("Hz"), "of the change", 0.0, f64::INFINITY)
+                    .within(Limit::RepeatedCycles),
             ],
         },
     ],
@@ -58,13 +59,13 @@ static CARD: Card = Card {
 };
 
 impl Effect for TimeVaryingStiffness {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let end = scene.duration;
-        if !scene.tells_time() {
+        if !scene.separates_time_from_depth() {
             return Vec::new();
         }
         match form {
@@ -75,11 +76,11 @@ impl Effect for TimeVaryingStiffness {
         }
     }
 
-    fn tones(&self, form: usize, scene: &Scene) -> Option<Tones> {
+    fn frequency_search(&self, form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
         // Below one turn a trial it is a drift.
-        (form == 3 && scene.tells_time()).then(|| Tones {
+        (form == 3 && scene.separates_time_from_depth()).then(|| FrequencySearch {
             abscissa: Abscissa::Time,
-            weight: Weight::Depth,
+            weight: ToneWeight::Depth,
             frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, 60)],
             size: 0.1,
             harmonics: 1,
@@ -87,12 +88,12 @@ impl Effect for TimeVaryingStiffness {
         })
     }
 
-    fn touch(&self, form: usize, values: &[f64], _memory: &mut Memory, touch: &mut Touch) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
         let time = touch.time;
         touch.stiffness *= 1.0
             + match form {
                 0 => values[0] * time,
-                1 => values[0] * gate(time - values[1], touch.blur),
+                1 => values[0] * gate(time - values[1], touch.filter_width),
                 2 => -values[0] * (-time / values[1].max(f64::MIN_POSITIVE)).exp_m1(),
                 _ => {
                     let (sine, cosine) = (TAU * values[2] * time).sin_cos();

@@ -1,19 +1,20 @@
 //! Play between motor and tool.
 
-use super::link::Link;
+use super::two_mass_link::TwoMassLink;
 use crate::effects::{
-    Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Side, Stage, Start, geometric, linear,
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, LoadSideSignals, Parameter, Place, Stage,
+    Start, geometric, linear,
 };
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct Backlash;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "backlash",
     place: Place::Drive,
     stage: Stage::Transmission,
-    most: 1,
+    max_instances: 1,
     statement: "Between motor and tool there is play: after a reversal the motor runs free before it takes the tool along",
     forms: &[Form {
         name: "two_masses",
@@ -34,20 +35,20 @@ static CARD: Card = Card {
 };
 
 /// Swings of the flanks, over those of the slowest link that can be told: stiff beside all that a recording shows.
-const FLANKS: f64 = 2.2;
+const FLANK_RATE_RATIO: f64 = 2.2;
 
 /// Deviations of noise beyond which it is decided which side bears.
-const DECIDED: f64 = 3.0;
+const CONTACT_SIDE_SIGMAS: f64 = 3.0;
 
 /// Widths of the filter beyond which nothing is left of a step.
-const REACH: f64 = 5.0;
+const RESPONSE_WIDTHS: f64 = 5.0;
 
 /// Parts of the gap that the motor has gone through at the middles of four equal parts of its way, as shares of the time:
 /// the effort grows from nothing, and the way as the cube of the time.
-const QUARTERS: [f64; 4] = [0.5, 0.721, 0.855, 0.956];
+const TRAVERSE_TIME_FRACTIONS: [f64; 4] = [0.5, 0.721, 0.855, 0.956];
 
 /// Longest way through the gap that is told, in widths of the filter: of a tool that rests, nothing says when the motor left.
-const LONGEST: f64 = 12.0;
+const MAX_TRAVERSE_WIDTHS: f64 = 12.0;
 
 /// A change of the side that bears.
 struct Crossing {
@@ -58,15 +59,15 @@ struct Crossing {
 }
 
 /// Lengths of the way through the gap that are tried.
-const SPANS: usize = 12;
+const TRAVERSE_GRID: usize = 12;
 
 /// Rows after the side is decided within which the strike is looked for.
-const LATE: usize = 2;
+const STRIKE_SEARCH_ROWS: usize = 2;
 
 /// The changes of the side that bears.
-fn crossings(side: &Side<'_>, tool: f64) -> Vec<Crossing> {
+fn crossings(side: &LoadSideSignals<'_>, tool: f64) -> Vec<Crossing> {
     let [speed, shake, force] = side.noise;
-    let least = DECIDED * ((tool * shake).powi(2) + (side.viscous * speed).powi(2) + force * force).sqrt();
+    let least = CONTACT_SIDE_SIGMAS * ((tool * shake).powi(2) + (side.viscous * speed).powi(2) + force * force).sqrt();
     let mut crossings = Vec::new();
     let mut bears = 0.0;
     for at in 0..side.velocity.len() {
@@ -88,7 +89,7 @@ fn crossings(side: &Side<'_>, tool: f64) -> Vec<Crossing> {
 /// Where `force` peaks at row `at` or soon after it, of `rows`: the motor strikes, and what the tool bears jumps.
 fn strike(force: &dyn Fn(usize) -> f64, at: usize, rows: usize) -> f64 {
     let mut peak = at;
-    while peak + 1 < rows && peak < at + LATE && force(peak + 1) > force(peak) {
+    while peak + 1 < rows && peak < at + STRIKE_SEARCH_ROWS && force(peak + 1) > force(peak) {
         peak += 1;
     }
     if peak == 0 || peak + 1 >= rows {
@@ -102,25 +103,27 @@ fn strike(force: &dyn Fn(usize) -> f64, at: usize, rows: usize) -> f64 {
 impl Crossing {
     /// Second derivative at row `at`, behind the filter, of the motor's lead over the tool, whose way through a gap of one took `span`
     /// rows.
-    fn bend(&self, side: &Side<'_>, span: f64, at: usize) -> f64 {
+    fn bend(&self, side: &LoadSideSignals<'_>, span: f64, at: usize) -> f64 {
         let quarter = |part: &f64| {
-            let past = (at as f64 - self.strikes + (1.0 - part) * span) * side.step / side.blur;
+            let past = (at as f64 - self.strikes + (1.0 - part) * span) * side.step / side.filter_width;
             -past * (-0.5 * past * past).exp()
         };
-        let sum: f64 = QUARTERS.iter().map(quarter).sum();
-        self.turn * 0.25 * sum / (std::f64::consts::TAU.sqrt() * side.blur * side.blur)
+        let sum: f64 = TRAVERSE_TIME_FRACTIONS.iter().map(quarter).sum();
+        self.turn * 0.25 * sum / (std::f64::consts::TAU.sqrt() * side.filter_width * side.filter_width)
     }
 
     /// First row of the crossing, and what it takes of the effort from there on, where a gap of one takes `size`: of all lengths of
     /// the way the one that leaves the least of the balance. How long it took depends on an effort that grows from nothing,
     /// and is told by the recording itself.
-    fn taken(&self, side: &Side<'_>, size: f64) -> (usize, Vec<f64>) {
-        let longest = LONGEST * side.blur / side.step;
+    fn taken(&self, side: &LoadSideSignals<'_>, size: f64) -> (usize, Vec<f64>) {
+        let longest = MAX_TRAVERSE_WIDTHS * side.filter_width / side.step;
         let first = (self.strikes - longest).max(0.0) as usize;
-        let last = ((self.strikes + REACH * side.blur / side.step) as usize).min(side.velocity.len() - 1);
-        let tried = geometric(0.5, longest, SPANS).into_iter().map(|span| {
+        let last =
+            ((self.strikes + RESPONSE_WIDTHS * side.filter_width / side.step) as usize).min(side.velocity.len() - 1);
+        let tried = geometric(0.5, longest, TRAVERSE_GRID).into_iter().map(|span| {
             let taken: Vec<f64> = (first..=last).map(|at| size * self.bend(side, span, at)).collect();
-            let left: f64 = taken.iter().zip(first..).map(|(taken, at)| (side.rest(at) - taken).powi(2)).sum();
+            let left: f64 =
+                taken.iter().zip(first..).map(|(taken, at)| (side.balance_residual(at) - taken).powi(2)).sum();
             (left, taken)
         });
         let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
@@ -129,16 +132,16 @@ impl Crossing {
 }
 
 impl Effect for Backlash {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // Without a force sensor nothing tells which side of the teeth bears.
         if !scene.has_force {
             return Vec::new();
         }
-        let (way, pulse) = (scene.travel.1 - scene.travel.0, FLANKS * scene.link_rate());
+        let (way, pulse) = (scene.travel.1 - scene.travel.0, FLANK_RATE_RATIO * scene.min_link_rate());
         let start = |share: f64| Start::sized(&[0.01 * way, share, share * scene.inertia * pulse * pulse], &[0]);
         linear(0.1, 0.79, 8).into_iter().map(start).collect()
     }
@@ -146,7 +149,7 @@ impl Effect for Backlash {
     /// The motor rests against the side that bears, and what the tool's side bears is seen: where that changes its sign, the motor
     /// has gone through the gap. What that takes is `m1` times the second derivative of its way, which ends in a stroke. A motor
     /// that is followed through the gap instead lands where the noise of the tool's position takes it.
-    fn ahead(&self, _form: usize, values: &[f64], side: &Side<'_>) -> Option<Vec<f64>> {
+    fn transmission_loss(&self, _form: usize, values: &[f64], side: &LoadSideSignals<'_>) -> Option<Vec<f64>> {
         let motor = values[1] * side.inertia;
         let mut all = vec![0.0; side.velocity.len()];
         for crossing in crossings(side, side.inertia - motor) {
@@ -156,10 +159,10 @@ impl Effect for Backlash {
         Some(all)
     }
 
-    fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], memory: &mut EffectState, push: &mut DriveState) {
         // Flanks that ring three times.
         let motor = values[1] * push.inertia;
         let damping = 0.6 * (values[2] * motor).max(0.0).sqrt();
-        Link { stiffness: values[2], damping, inertia: motor, viscous: 0.0, gap: values[0] }.carry(memory, push);
+        TwoMassLink { stiffness: values[2], damping, inertia: motor, viscous: 0.0, gap: values[0] }.carry(memory, push);
     }
 }

@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, Tones, Weight,
+    Abscissa, DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter,
+    Place, Stage, Start, ToneWeight,
 };
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct Cogging;
 
 const fn part(name: &'static str) -> Parameter {
@@ -15,13 +16,14 @@ const fn part(name: &'static str) -> Parameter {
 }
 
 const PITCH: Parameter =
-    Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY).within(Limit::Way);
+    Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY)
+        .within(Limit::RepeatedPitch);
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "cogging",
     place: Place::Drive,
     stage: Stage::Load,
-    most: 1,
+    max_instances: 1,
     statement: "The drive pulls and pushes in a pattern that repeats along the way",
     forms: &[
         Form {
@@ -41,27 +43,27 @@ static CARD: Card = Card {
 };
 
 impl Effect for Cogging {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, _form: usize, _scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, _scene: &ExcitationStats) -> Vec<Start> {
         Vec::new()
     }
 
-    fn tones(&self, form: usize, scene: &Scene) -> Option<Tones> {
+    fn frequency_search(&self, form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
         let way = scene.travel.1 - scene.travel.0;
         // Half a turn over the whole way apart. Below one and a half turns it is a slope, and no pattern has been seen. A pitch of
         // less than two steps of the encoder is not seen either: what its steps are wrong by repeats with each of them.
         let finest = (way / scene.resolution).clamp(0.0, f64::from(u32::MAX)) as usize;
         let count = finest.saturating_sub(2).min(120);
-        (way > 0.0 && count > 0).then(|| Tones {
+        (way > 0.0 && count > 0).then(|| FrequencySearch {
             abscissa: Abscissa::Position,
-            weight: Weight::Even,
+            weight: ToneWeight::Even,
             frequencies: vec![(1.5 / way, 0.5 / way, count)],
             size: 0.02 * scene.effort,
             harmonics: form + 1,
@@ -69,13 +71,13 @@ impl Effect for Cogging {
         })
     }
 
-    fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
         let Some((pitch, parts)) = values.split_last() else { return };
         for (at, wave) in parts.chunks_exact(2).enumerate() {
             let turn = TAU * (at + 1) as f64 / pitch.max(f64::MIN_POSITIVE);
             let (sine, cosine) = (turn * push.position).sin_cos();
             // What the smoothing filter leaves of a ripple that passes at this speed.
-            let left = (-0.5 * (turn * push.velocity * push.blur).powi(2)).exp();
+            let left = (-0.5 * (turn * push.velocity * push.filter_width).powi(2)).exp();
             push.resistance += left * (wave[0] * sine + wave[1] * cosine);
         }
     }

@@ -1,18 +1,20 @@
 //! Dry friction.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start};
+use crate::effects::{
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct CoulombFriction;
 
 const NEWTON: Word = Word::new("N", "N m");
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "coulomb_friction",
     place: Place::Drive,
     stage: Stage::Friction,
-    most: 1,
+    max_instances: 1,
     statement: "The drive rubs: a constant force against the motion, which also holds it at rest",
     forms: &[
         Form {
@@ -35,11 +37,11 @@ static CARD: Card = Card {
 };
 
 impl Effect for CoulombFriction {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let levels = [0.003, 0.03, 0.2].map(|part| part * scene.effort);
         if form == 0 {
             levels.iter().map(|level| Start::sized(&[*level], &[0])).collect()
@@ -48,14 +50,14 @@ impl Effect for CoulombFriction {
         }
     }
 
-    fn push(&self, form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
         let direction = push.direction();
         if form == 0 {
-            push.rub(values[0] * direction, values[0]);
+            push.apply_dry_friction(values[0] * direction, values[0]);
         } else {
             let (forward, backward) = (values[0], values[1]);
             let sliding = 0.5 * ((forward + backward) * direction + (forward - backward) * direction.abs());
-            push.rub(sliding, if push.rest() > 0.0 { forward } else { backward });
+            push.apply_dry_friction(sliding, if push.balance_residual() > 0.0 { forward } else { backward });
         }
     }
 }

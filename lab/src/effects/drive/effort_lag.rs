@@ -1,16 +1,18 @@
 //! A drive that comes late.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use crate::effects::{
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct EffortLag;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "effort_lag",
     place: Place::Drive,
     stage: Stage::Transmission,
-    most: 1,
+    max_instances: 1,
     statement: "The effort builds up later than commanded",
     forms: &[Form {
         name: "first_order",
@@ -23,15 +25,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for EffortLag {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         geometric(scene.sample, 30.0 * scene.step, 7).iter().map(|time| Start::at(&[*time])).collect()
     }
 
-    fn push(&self, _form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], memory: &mut EffectState, push: &mut DriveState) {
         // memory: effort at the tool, command an instant ago, its rate, whether they are known.
         let time = values[0];
         if memory[3] == 0.0 || time <= 0.0 {

@@ -1,23 +1,24 @@
 //! A drive that cannot give what is asked.
 
-use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, linear};
+use crate::effects::{
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start, linear,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct EffortSaturation;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "effort_saturation",
     place: Place::Drive,
     stage: Stage::Transmission,
-    most: 1,
+    max_instances: 1,
     statement: "The drive does not give more than a certain effort, whatever is commanded",
     forms: &[Form {
         name: "symmetric",
         equation: "effort at the tool = commanded effort within -limit to limit",
-        parameters: &[
-            Parameter::new("limit", Word::new("N", "N m"), "greatest effort", 0.0, f64::INFINITY).within(Limit::Range)
-        ],
+        parameters: &[Parameter::new("limit", Word::new("N", "N m"), "greatest effort", 0.0, f64::INFINITY)
+            .within(Limit::ReachedRange)],
     }],
     excited_by: "efforts near the greatest that is commanded",
     resembles: &["effort_lag", "coulomb_friction"],
@@ -25,11 +26,11 @@ static CARD: Card = Card {
 };
 
 impl Effect for EffortSaturation {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         linear(0.2, 0.95, 12).iter().map(|part| Start::at(&[part * scene.effort])).collect()
     }
 
@@ -37,7 +38,7 @@ impl Effect for EffortSaturation {
         Some(values[0].abs())
     }
 
-    fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
         push.effort = push.effort.max(-values[0].abs()).min(values[0].abs());
     }
 }

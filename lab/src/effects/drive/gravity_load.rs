@@ -1,18 +1,20 @@
 //! Weight.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start};
+use crate::effects::{
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct GravityLoad;
 
 const NEWTON: Word = Word::new("N", "N m");
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "gravity_load",
     place: Place::Drive,
     stage: Stage::Load,
-    most: 1,
+    max_instances: 1,
     statement: "The drive carries a weight",
     forms: &[
         Form {
@@ -42,11 +44,11 @@ static CARD: Card = Card {
 };
 
 impl Effect for GravityLoad {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let size = 0.05 * scene.effort;
         match form {
             0 => vec![Start::sized(&[size], &[0])],
@@ -55,7 +57,7 @@ impl Effect for GravityLoad {
         }
     }
 
-    fn push(&self, form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
         push.resistance += if form == 0 {
             values[0]
         } else {

@@ -1,16 +1,18 @@
 //! Friction that grows with what the tool presses.
 
-use crate::effects::{Card, Effect, Form, Memory, Parameter, Place, Push, Scene, Stage, Start};
+use crate::effects::{
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct LoadDependentFriction;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "load_dependent_friction",
     place: Place::Drive,
     stage: Stage::Friction,
-    most: 1,
+    max_instances: 1,
     statement: "The harder the tool presses, the more the drive rubs",
     forms: &[Form {
         name: "proportional",
@@ -23,19 +25,19 @@ static CARD: Card = Card {
 };
 
 impl Effect for LoadDependentFriction {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         if !scene.has_force {
             return Vec::new();
         }
         [0.02, 0.2].iter().map(|part| Start::sized(&[*part], &[0])).collect()
     }
 
-    fn push(&self, _form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
         let level = values[0] * push.force.abs();
-        push.rub(level * push.direction(), level);
+        push.apply_dry_friction(level * push.direction(), level);
     }
 }

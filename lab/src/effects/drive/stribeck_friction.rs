@@ -2,10 +2,13 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use crate::effects::{
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
+    geometric,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct StribeckFriction;
 
 const NEWTON: Word = Word::new("N", "N m");
@@ -20,14 +23,14 @@ const PARAMETERS: &[Parameter] = &[
         0.0,
         f64::INFINITY,
     )
-    .within(Limit::Pace),
+    .within(Limit::MinSpeed),
 ];
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "stribeck_friction",
     place: Place::Drive,
     stage: Stage::Friction,
-    most: 1,
+    max_instances: 1,
     statement: "The drive rubs, and it rubs more when it creeps than when it runs",
     forms: &[
         Form {
@@ -47,32 +50,32 @@ static CARD: Card = Card {
 };
 
 impl Effect for StribeckFriction {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let level = 0.03 * scene.effort;
         let slowest = (0.03 * scene.speed).max(scene.slowest());
         let speeds = geometric(slowest, (1.5 * scene.speed).max(slowest), 6);
         speeds.iter().map(|speed| Start::sized(&[level, level, *speed], &[0, 1])).collect()
     }
 
-    fn push(&self, form: usize, values: &[f64], _memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
         let speed = values[2].max(f64::MIN_POSITIVE);
         // Within the blur the speed is spread by the acceleration: what is felt is the mean over a Gaussian.
-        let spread = ((push.acceleration * push.blur).powi(2) + push.speed_noise.powi(2)).sqrt();
+        let spread = ((push.acceleration * push.filter_width).powi(2) + push.velocity_noise.powi(2)).sqrt();
         let left = if form == 0 {
             let wide = (speed * speed + 2.0 * spread * spread).sqrt();
             speed / wide * (-(push.velocity / wide).powi(2)).exp()
         } else {
             decayed(push.velocity.abs() / speed, spread / speed)
         };
-        push.rub((values[0] + values[1] * left) * push.direction(), values[0] + values[1]);
+        push.apply_dry_friction((values[0] + values[1] * left) * push.direction(), values[0] + values[1]);
     }
 }
 
@@ -82,7 +85,7 @@ fn decayed(v: f64, spread: f64) -> f64 {
         return (0.5 * spread * spread - v).exp();
     }
     // Beyond, the products below are zero times infinity; what they tend to is the density at v times the area, 2.
-    if spread > MOST_SPREAD {
+    if spread > MAX_SPREAD {
         return (-0.5 * (v / spread).powi(2)).exp() * 2.0 / (spread * std::f64::consts::TAU.sqrt());
     }
     let side = |v: f64| (0.5 * spread * spread + v).exp() * libm::erfc((spread + v / spread) * FRAC_1_SQRT_2);
@@ -90,7 +93,7 @@ fn decayed(v: f64, spread: f64) -> f64 {
 }
 
 /// Spread over the Stribeck speed from which the exponential is a spike.
-const MOST_SPREAD: f64 = 20.0;
+const MAX_SPREAD: f64 = 20.0;
 
 #[cfg(test)]
 mod tests {
@@ -109,7 +112,7 @@ mod tests {
                     / std::f64::consts::TAU.sqrt();
                 let found = decayed(v, spread);
                 // The spike leaves out the curvature of the density over its width: a share of one over the spread squared.
-                let within = if spread > MOST_SPREAD { 2.0 / (spread * spread) } else { 1e-5 };
+                let within = if spread > MAX_SPREAD { 2.0 / (spread * spread) } else { 1e-5 };
                 // Six deviations leave out 2e-9; a spread that narrow has corners between the steps of the rule.
                 assert!((found - mean).abs() <= within * mean + 4e-9, "{v} {spread}: {found} for {mean}");
             }

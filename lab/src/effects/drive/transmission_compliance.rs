@@ -1,10 +1,13 @@
 //! A cable, belt or gear that gives.
 
-use super::link::Link;
-use crate::effects::{Card, Effect, Form, Limit, Memory, Parameter, Place, Push, Scene, Stage, Start, geometric};
+use super::two_mass_link::TwoMassLink;
+use crate::effects::{
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
+    geometric,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct TransmissionCompliance;
 
 const LINK_STIFFNESS: Parameter = Parameter::new(
@@ -14,7 +17,7 @@ const LINK_STIFFNESS: Parameter = Parameter::new(
     0.0,
     f64::INFINITY,
 )
-.within(Limit::Swing);
+.within(Limit::ResonanceInBand);
 
 const MOTOR_SHARE: Parameter =
     Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8);
@@ -22,11 +25,11 @@ const MOTOR_SHARE: Parameter =
 const DAMPING_RATIO: Parameter =
     Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.005, 0.3);
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "transmission_compliance",
     place: Place::Drive,
     stage: Stage::Transmission,
-    most: 1,
+    max_instances: 1,
     statement: "Between motor and tool something gives: the two do not move as one",
     forms: &[
         Form {
@@ -57,21 +60,21 @@ static CARD: Card = Card {
 };
 
 impl Effect for TransmissionCompliance {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // Without a force sensor nothing but the noise of the acceleration stands against a hidden motor.
         if !scene.has_force {
             return Vec::new();
         }
         let mut starts = Vec::new();
-        for pulse in geometric(1.05 * scene.link_rate(), 5.0 * scene.link_rate(), 6) {
+        for pulse in geometric(1.05 * scene.min_link_rate(), 5.0 * scene.min_link_rate(), 6) {
             for share in [0.2, 0.6] {
                 let values = [scene.inertia * pulse * pulse, share, 0.05, 0.5];
                 starts.push(Start::at(&values[..3 + form]));
@@ -80,22 +83,22 @@ impl Effect for TransmissionCompliance {
         starts
     }
 
-    fn push(&self, form: usize, values: &[f64], memory: &mut Memory, push: &mut Push) {
+    fn act_on_drive(&self, form: usize, values: &[f64], memory: &mut EffectState, push: &mut DriveState) {
         let motor = values[1] * push.inertia;
         let viscous = if form == 0 { 0.0 } else { values[3] * push.viscous };
-        if push.blur > 0.0 {
+        if push.filter_width > 0.0 {
             // The motor leads the tool by T / k, later by c / k, and T is what the tool's side bears: its acceleration is seen,
             // not followed. A motor that is followed swings at its own rate with the noise of the tool's position.
             let (tool, rest) = (push.inertia - motor, push.viscous - viscous);
             let rise = tool * push.jerk + rest * push.acceleration + push.force_rate;
-            let bend = tool * push.snap + rest * push.jerk + push.force_bend;
-            let jerk = tool * push.crackle + rest * push.snap + push.force_jerk;
+            let bend = tool * push.snap + rest * push.jerk + push.force_second_derivative;
+            let jerk = tool * push.crackle + rest * push.snap + push.force_third_derivative;
             let softness = values[0].max(f64::MIN_POSITIVE).recip();
             let late = 2.0 * values[2] * (motor * softness).max(0.0).sqrt();
             push.resistance += softness * (motor * (bend - late * jerk) + viscous * (rise - late * bend));
             return;
         }
         let damping = 2.0 * values[2] * (values[0] * motor).max(0.0).sqrt();
-        Link { stiffness: values[0], damping, inertia: motor, viscous, gap: 0.0 }.carry(memory, push);
+        TwoMassLink { stiffness: values[0], damping, inertia: motor, viscous, gap: 0.0 }.carry(memory, push);
     }
 }

@@ -1,16 +1,16 @@
 //! A force that is written down late.
 
-use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start, geometric};
+use crate::effects::{Effect, EffectSpec, ExcitationStats, Form, Parameter, Place, Reading, Stage, Start, geometric};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct ChannelDelay;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "channel_delay",
     place: Place::Sensor,
     stage: Stage::Response,
-    most: 1,
+    max_instances: 1,
     statement: "The force is written down later than the position it belongs to",
     forms: &[Form {
         name: "pure",
@@ -23,15 +23,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for ChannelDelay {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         geometric(0.3 * scene.sample, 6.0 * scene.step, 6).iter().map(|delay| Start::at(&[*delay])).collect()
     }
 
-    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
         reading.delay(values[0].max(0.0));
     }
 }

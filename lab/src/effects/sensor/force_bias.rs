@@ -1,16 +1,16 @@
 //! A zero that is not zero.
 
-use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start};
+use crate::effects::{Effect, EffectSpec, ExcitationStats, Form, Parameter, Place, Reading, Stage, Start};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct ForceBias;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "force_bias",
     place: Place::Sensor,
     stage: Stage::Zero,
-    most: 1,
+    max_instances: 1,
     statement: "The force sensor shows a force when nothing is touched",
     forms: &[Form {
         name: "constant",
@@ -29,20 +29,20 @@ static CARD: Card = Card {
 };
 
 impl Effect for ForceBias {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // Without a free moment it is a surface that lies elsewhere.
-        if scene.is_bilateral || scene.sees_zero() {
+        if scene.is_bilateral || scene.shows_sensor_zero() {
             vec![Start::sized(&[0.01 * scene.force], &[0])]
         } else {
             Vec::new()
         }
     }
 
-    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
         reading.force.iter_mut().for_each(|force| *force += values[0]);
     }
 }

@@ -1,16 +1,18 @@
 //! A zero that wanders.
 
-use crate::effects::{Card, Effect, Form, Limit, Parameter, Place, Reading, Scene, Stage, Start, geometric};
+use crate::effects::{
+    Effect, EffectSpec, ExcitationStats, Form, Limit, Parameter, Place, Reading, Stage, Start, geometric,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct ForceDrift;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "force_drift",
     place: Place::Sensor,
     stage: Stage::Zero,
-    most: 1,
+    max_instances: 1,
     statement: "The zero of the force sensor wanders as time goes by",
     forms: &[
         Form {
@@ -56,7 +58,7 @@ static CARD: Card = Card {
                     f64::INFINITY,
                 ),
                 Parameter::new("time_constant", Word::same("s"), "of its coming to rest", 0.0, f64::INFINITY)
-                    .within(Limit::Step),
+                    .within(Limit::ResolvableTime),
             ],
         },
     ],
@@ -66,17 +68,17 @@ static CARD: Card = Card {
 };
 
 impl Effect for ForceDrift {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 2
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // In one contact without a free moment after it, a drift is anything that grows with depth.
-        if !scene.tells_time() && scene.free_span < 0.5 {
+        if !scene.separates_time_from_depth() && scene.free_span < 0.5 {
             return Vec::new();
         }
         let size = 0.01 * scene.force;
@@ -89,7 +91,7 @@ impl Effect for ForceDrift {
         }
     }
 
-    fn read(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
         let zero = |time: f64| match form {
             0 => values[0] * time,
             1 => values[0] * time + values[1],

@@ -1,16 +1,16 @@
 //! A sensor that shows too much, or too little.
 
-use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start};
+use crate::effects::{Effect, EffectSpec, ExcitationStats, Form, Parameter, Place, Reading, Stage, Start};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct ForceGain;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "force_gain",
     place: Place::Sensor,
     stage: Stage::Response,
-    most: 1,
+    max_instances: 1,
     statement: "The force sensor is off by a factor: the drive feels another force than it shows",
     forms: &[Form {
         name: "factor",
@@ -29,15 +29,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for ForceGain {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         if scene.has_effort { vec![Start::sized(&[0.05], &[0])] } else { Vec::new() }
     }
 
-    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
         reading.force.iter_mut().for_each(|force| *force *= 1.0 + values[0]);
     }
 }

@@ -1,16 +1,16 @@
 //! A force that is smoothed before it is written down.
 
-use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start, geometric};
+use crate::effects::{Effect, EffectSpec, ExcitationStats, Form, Parameter, Place, Reading, Stage, Start, geometric};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct ForceLag;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "force_lag",
     place: Place::Sensor,
     stage: Stage::Response,
-    most: 1,
+    max_instances: 1,
     statement: "The force sensor follows slowly, as behind a low-pass filter",
     forms: &[Form {
         name: "first_order",
@@ -23,11 +23,11 @@ static CARD: Card = Card {
 };
 
 impl Effect for ForceLag {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // F + T dF/dt = K x + B v is a spring of K beside a Maxwell branch of B / T - K: only a force that fades after the tool has
         // left, or the drive, tells a slow sensor from a body that relaxes, and a body is what is seldom known.
         if scene.releases == 0 && !scene.has_effort {
@@ -36,7 +36,7 @@ impl Effect for ForceLag {
         geometric(0.3 * scene.sample, 30.0 * scene.step, 8).iter().map(|time| Start::at(&[*time])).collect()
     }
 
-    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
         reading.low_pass(values[0]);
     }
 }

@@ -1,19 +1,21 @@
 //! A sensor at the end of its range.
 
-use crate::effects::{Card, Effect, Form, Limit, Parameter, Place, Reading, Scene, Stage, Start, linear, rounded};
+use crate::effects::{
+    Effect, EffectSpec, ExcitationStats, Form, Limit, Parameter, Place, Reading, Stage, Start, linear, rounded,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct ForceSaturation;
 
 const LIMIT: Parameter =
-    Parameter::new("limit", Word::new("N", "N m"), "greatest reading", 0.0, f64::INFINITY).within(Limit::Range);
+    Parameter::new("limit", Word::new("N", "N m"), "greatest reading", 0.0, f64::INFINITY).within(Limit::ReachedRange);
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "force_saturation",
     place: Place::Sensor,
     stage: Stage::Range,
-    most: 1,
+    max_instances: 1,
     statement: "The force sensor does not show more than a certain force",
     forms: &[
         Form { name: "symmetric", equation: "reading = F within -limit to limit", parameters: &[LIMIT] },
@@ -38,15 +40,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for ForceSaturation {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
     fn refines(&self, form: usize) -> bool {
         form == 1
     }
 
-    fn starts(&self, form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let limits = linear(0.4, 0.99, 10).into_iter().map(|part| part * scene.force);
         if form == 0 {
             return limits.map(|limit| Start::at(&[limit])).collect();
@@ -54,7 +56,7 @@ impl Effect for ForceSaturation {
         limits.flat_map(|limit| [0.01, 0.03].map(|part| Start::at(&[limit, part]))).collect()
     }
 
-    fn read(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
         let limit = values[0].abs();
         if form == 0 {
             reading.force.iter_mut().for_each(|force| *force = force.max(-limit).min(limit));

@@ -2,19 +2,22 @@
 
 use std::f64::consts::TAU;
 
-use crate::effects::{Abscissa, Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start, Tones, Weight};
+use crate::effects::{
+    Abscissa, Effect, EffectSpec, ExcitationStats, Form, FrequencySearch, Parameter, Place, Reading, Stage, Start,
+    ToneWeight,
+};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct MainsHum;
 
 const NEWTON: Word = Word::new("N", "N m");
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "mains_hum",
     place: Place::Sensor,
     stage: Stage::Zero,
-    most: 1,
+    max_instances: 1,
     statement: "The force reading carries a tone, in contact and out of it",
     forms: &[Form {
         name: "tone",
@@ -31,15 +34,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for MainsHum {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, _scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, _scene: &ExcitationStats) -> Vec<Start> {
         Vec::new()
     }
 
-    fn tones(&self, _form: usize, scene: &Scene) -> Option<Tones> {
+    fn frequency_search(&self, _form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
         // The mains keep their frequency to a few tenths of a per cent; over a long trial that is several turns.
         let apart = 0.25 / scene.duration;
         let band = |mains: f64| {
@@ -49,9 +52,9 @@ impl Effect for MainsHum {
         let frequencies: Vec<_> =
             [50.0, 60.0].into_iter().filter(|mains| *mains < 0.42 / scene.step).map(band).collect();
         let size = 0.01 * scene.force;
-        (!frequencies.is_empty()).then_some(Tones {
+        (!frequencies.is_empty()).then_some(FrequencySearch {
             abscissa: Abscissa::Time,
-            weight: Weight::Even,
+            weight: ToneWeight::Even,
             frequencies,
             size,
             harmonics: 1,
@@ -59,7 +62,7 @@ impl Effect for MainsHum {
         })
     }
 
-    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
         let left = reading.passes(values[2]);
         for (at, force) in reading.force.iter_mut().enumerate() {
             let (sine, cosine) = (TAU * values[2] * (reading.start + at as f64 * reading.step)).sin_cos();

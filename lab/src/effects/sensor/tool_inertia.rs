@@ -1,16 +1,16 @@
 //! A mass beyond the sensor.
 
-use crate::effects::{Card, Effect, Form, Parameter, Place, Reading, Scene, Stage, Start};
+use crate::effects::{Effect, EffectSpec, ExcitationStats, Form, Parameter, Place, Reading, Stage, Start};
 use crate::rig::Word;
 
-/// See [`CARD`].
+/// See [`SPEC`].
 pub struct ToolInertia;
 
-static CARD: Card = Card {
+static SPEC: EffectSpec = EffectSpec {
     name: "tool_inertia",
     place: Place::Sensor,
     stage: Stage::Mount,
-    most: 1,
+    max_instances: 1,
     statement: "The force sensor also feels the mass of what is mounted beyond it",
     forms: &[Form {
         name: "rigid",
@@ -29,15 +29,15 @@ static CARD: Card = Card {
 };
 
 impl Effect for ToolInertia {
-    fn card(&self) -> &'static Card {
-        &CARD
+    fn spec(&self) -> &'static EffectSpec {
+        &SPEC
     }
 
-    fn starts(&self, _form: usize, scene: &Scene) -> Vec<Start> {
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         vec![Start::sized(&[0.02 * scene.force / scene.acceleration.max(f64::MIN_POSITIVE)], &[0])]
     }
 
-    fn read(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
+    fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
         for (force, acceleration) in reading.force.iter_mut().zip(reading.acceleration) {
             *force += values[0] * acceleration;
         }

@@ -1,13 +1,13 @@
 //! The traces inside the page.
 
-use super::super::diagnosis::{Answer, Pictures, Trace};
+use super::super::diagnosis::{Diagnosis, PlotData, Trace};
 use super::trial::{Trial, compared, lines};
 use crate::page::{column, thin};
 use serde::Serialize;
 use std::io::{self, Write};
 
 /// Numbers that a row of a trace takes: a time counts twice.
-const COLUMNS: usize = 9;
+const NUMBERS_PER_ROW: usize = 9;
 
 #[derive(Serialize)]
 struct Description<'a> {
@@ -47,8 +47,8 @@ struct DescribedPlace {
 
 /// Writes description and columns of every trial.
 pub(super) fn write(
-    answer: &Answer,
-    pictures: &Pictures,
+    answer: &Diagnosis,
+    pictures: &PlotData,
     trials: &[Trial<'_>],
     out: &mut impl Write,
 ) -> io::Result<()> {
@@ -60,7 +60,7 @@ pub(super) fn write(
         trials: trials.iter().map(describe).collect(),
     };
     column::description(&description, out)?;
-    let budget = thin::budget(COLUMNS * pictures.traces.len());
+    let budget = thin::budget(NUMBERS_PER_ROW * pictures.traces.len());
     for trial in trials {
         for (id, trace) in &trial.traces {
             columns(*id, trace, &shown(trial, trace, budget), out)?;
@@ -82,15 +82,15 @@ fn describe(trial: &Trial<'_>) -> DescribedTrial {
 
 /// The rows that look like all of them, and of the largest places as many as may be, for there the page looks closely.
 fn shown(trial: &Trial<'_>, trace: &Trace, budget: usize) -> Vec<usize> {
-    let mut certain = thin::edges(&trace.seen, budget / 8);
+    let mut certain = thin::edges(&trace.valid, budget / 8);
     certain.extend(close_look(trial, trace, budget / 3));
     let left = |model: &[f32]| -> Vec<f32> {
         trace
             .measured
             .iter()
             .zip(model)
-            .zip(&trace.seen)
-            .map(|((m, s), seen)| if *seen { m - s } else { f32::NAN })
+            .zip(&trace.valid)
+            .map(|((m, s), valid)| if *valid { m - s } else { f32::NAN })
             .collect()
     };
     let residuals = [left(&trace.as_given), left(&trace.refitted), left(&trace.improved)];
@@ -116,14 +116,14 @@ fn close_look(trial: &Trial<'_>, trace: &Trace, most: usize) -> Vec<usize> {
 fn columns(id: usize, trace: &Trace, rows: &[usize], out: &mut impl Write) -> io::Result<()> {
     // The first row is the origin: it is what the places count from, and a clock since 1970 has no room for digits.
     column::write(out, &format!("t{id}-time"), rows, |row| (trace.time[row] - trace.time[0]).to_le_bytes())?;
-    column::write(out, &format!("t{id}-seen"), rows, |row| [u8::from(trace.seen[row])])?;
+    column::write(out, &format!("t{id}-seen"), rows, |row| [u8::from(trace.valid[row])])?;
     let floats = [
         ("depth", &trace.depth),
         ("measured", &trace.measured),
         ("given", &trace.as_given),
         ("refitted", &trace.refitted),
         ("improved", &trace.improved),
-        ("floor", &trace.floor),
+        ("floor", &trace.expected_noise),
     ];
     for (name, values) in floats {
         column::write(out, &format!("t{id}-{name}"), rows, |row| values[row].to_le_bytes())?;

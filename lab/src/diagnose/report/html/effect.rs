@@ -1,12 +1,12 @@
 //! The physics that the answer names, one card each.
 
-use super::super::diagnosis::{Answer, Physics, Value};
-use super::words::{estimate, gain, heading, odds};
+use super::super::diagnosis::{Diagnosis, Physics, Value};
+use super::wording::{estimate, gain, heading, odds};
 use crate::effects;
 use maud::{Markup, html};
 
 /// One card an effect; nothing where nothing is named.
-pub(super) fn section(answer: &Answer) -> Markup {
+pub(super) fn section(answer: &Diagnosis) -> Markup {
     html! {
         @if !answer.physics.is_empty() {
             section #physics aria-label="What is missing" { @for physics in &answer.physics { (card(physics)) } }
@@ -41,7 +41,7 @@ fn acts_in(place: &str) -> String {
         "contact" => "acts in the contact".into(),
         "drive" => "acts in the drive".into(),
         "sensor" => "acts in the sensor".into(),
-        channel => format!("seen in the {}", super::words::channel(channel)),
+        channel => format!("seen in the {}", super::wording::channel(channel)),
     }
 }
 
@@ -56,8 +56,8 @@ fn parameter(effect: &str, value: &Value) -> Markup {
 
 /// What the catalogue says of a parameter.
 fn meaning(effect: &str, parameter: &str) -> Option<&'static str> {
-    let card = effects::find(effect)?.card();
-    let mut all = card.forms.iter().flat_map(|form| form.parameters);
+    let spec = effects::find(effect)?.spec();
+    let mut all = spec.forms.iter().flat_map(|form| form.parameters);
     all.find(|known| known.name == parameter).map(|known| known.meaning)
 }
 

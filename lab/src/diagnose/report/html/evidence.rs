@@ -1,19 +1,19 @@
 //! The evidence against rivals, and the experiment that would decide.
 
-use super::super::diagnosis::{Answer, Bar, Pictures, Rival, Verdict};
+use super::super::diagnosis::{Alternative, Diagnosis, EffectEvidence, PlotData, Verdict};
 use super::axis::across;
-use super::words::{gain, list, probability, title};
-use super::{names_physics, reference};
+use super::wording::{gain, list, probability, title};
+use super::{experiment, names_physics};
 use maud::{Markup, html};
 
 /// Height of a bar with its words, px.
-const ROW: usize = 38;
+const BAR_HEIGHT_PX: usize = 38;
 /// Bars without a role beyond these are folded away.
-const SHOWN: usize = 8;
+const MAX_BARS: usize = 8;
 
 /// Bars, rivals and reference; nothing where no effect was tried.
-pub(super) fn section(answer: &Answer, pictures: &Pictures) -> Markup {
-    if pictures.scores.is_empty() && answer.rivals.is_empty() && pictures.experiment.is_none() {
+pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
+    if pictures.scores.is_empty() && answer.alternatives.is_empty() && pictures.experiment.is_none() {
         return html! { p.nothing { "No single effect is weighed against another here: there is no evidence for any of them." } };
     }
     html! {
@@ -21,15 +21,15 @@ pub(super) fn section(answer: &Answer, pictures: &Pictures) -> Markup {
             h2 #evidence-title { (if names_physics(answer) { "Evidence against rivals" } else { "Would other physics help?" }) }
             (scores(answer, &pictures.scores))
             (rivals(answer))
-            @if let Some(next) = &pictures.experiment { (reference::figure(next, pictures)) }
+            @if let Some(next) = &pictures.experiment { (experiment::figure(next, pictures)) }
         }
     }
 }
 
-fn scores(answer: &Answer, scores: &[Bar]) -> Markup {
+fn scores(answer: &Diagnosis, scores: &[EffectEvidence]) -> Markup {
     // What has a role is shown wherever it stands.
     let (first, rest): (Vec<_>, Vec<_>) =
-        scores.iter().enumerate().partition(|(rank, bar)| *rank < SHOWN || !bar.role.is_empty());
+        scores.iter().enumerate().partition(|(rank, bar)| *rank < MAX_BARS || !bar.role.is_empty());
     html! {
         @if !scores.is_empty() {
             p.fine {
@@ -51,7 +51,7 @@ fn nothing_named(verdict: Verdict) -> &'static str {
     }
 }
 
-fn bars(scores: &[(usize, &Bar)]) -> Markup {
+fn bars(scores: &[(usize, &EffectEvidence)]) -> Markup {
     let told: Vec<String> = scores
         .iter()
         .map(|(_, bar)| {
@@ -61,13 +61,13 @@ fn bars(scores: &[(usize, &Bar)]) -> Markup {
         .collect();
     let label = format!("What each effect takes away of what is missing. {}.", told.join("; "));
     html! {
-        svg.bars role="img" aria-label=(label) height=(ROW * scores.len()) {
-            @for (row, (_, bar)) in scores.iter().enumerate() { (drawn(bar, row * ROW)) }
+        svg.bars role="img" aria-label=(label) height=(BAR_HEIGHT_PX * scores.len()) {
+            @for (row, (_, bar)) in scores.iter().enumerate() { (drawn(bar, row * BAR_HEIGHT_PX)) }
         }
     }
 }
 
-fn drawn(bar: &Bar, top: usize) -> Markup {
+fn drawn(bar: &EffectEvidence, top: usize) -> Markup {
     let class = match bar.role {
         "answer" => "improved",
         "rival" => "rival",
@@ -88,8 +88,8 @@ fn drawn(bar: &Bar, top: usize) -> Markup {
     }
 }
 
-fn rivals(answer: &Answer) -> Markup {
-    if answer.rivals.is_empty() {
+fn rivals(answer: &Diagnosis) -> Markup {
+    if answer.alternatives.is_empty() {
         return html! {
             @if names_physics(answer) { p { "There are no rivals: nothing else that was tried explains these recordings as well." } }
         };
@@ -99,13 +99,13 @@ fn rivals(answer: &Answer) -> Markup {
         div.wide tabindex="0" role="region" aria-label="Rivals" {
             table.rivals {
                 thead { tr { th scope="col" { "It could as well be" } th scope="col" { "Takes away" } th scope="col" { "What would tell them apart" } } }
-                tbody { @for rival in &answer.rivals { (of_rival(rival)) } }
+                tbody { @for rival in &answer.alternatives { (of_rival(rival)) } }
             }
         }
     }
 }
 
-fn of_rival(rival: &Rival) -> Markup {
+fn of_rival(rival: &Alternative) -> Markup {
     let names: Vec<String> = rival.physics.iter().map(|name| title(name)).collect();
     html! {
         tr {

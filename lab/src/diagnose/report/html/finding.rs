@@ -1,12 +1,12 @@
 //! What was checked, what was found on the way, and what to record next.
 
-use super::super::diagnosis::{Answer, Finding, Pictures, Verdict};
-use super::words::{phase, title, worst};
+use super::super::diagnosis::{Diagnosis, Finding, PlotData, Verdict};
+use super::wording::{phase, title, worst};
 use crate::effects::{self, Place};
 use maud::{Markup, html};
 
 /// What casts doubt on the answer, for the head of the page; nothing where nothing does.
-pub(super) fn grave(answer: &Answer) -> Markup {
+pub(super) fn grave(answer: &Diagnosis) -> Markup {
     let grave: Vec<&Finding> = answer.findings.iter().filter(|finding| finding.grave).collect();
     html! {
         @if !grave.is_empty() {
@@ -19,7 +19,7 @@ pub(super) fn grave(answer: &Answer) -> Markup {
 }
 
 /// The end of the page.
-pub(super) fn section(answer: &Answer, pictures: &Pictures) -> Markup {
+pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
     html! {
         (next(answer, pictures))
         (findings(answer))
@@ -31,7 +31,7 @@ fn item(finding: &Finding) -> Markup {
     html! { li { @if !finding.place.is_empty() { strong.file { (finding.place) } ": " } (finding.text) } }
 }
 
-fn findings(answer: &Answer) -> Markup {
+fn findings(answer: &Diagnosis) -> Markup {
     if answer.findings.is_empty() {
         return html! { p.nothing { "The recordings themselves gave no cause for remark." } };
     }
@@ -47,11 +47,11 @@ fn findings(answer: &Answer) -> Markup {
 }
 
 /// The effects that were tried, by where they act.
-fn checked(answer: &Answer) -> Markup {
+fn checked(answer: &Diagnosis) -> Markup {
     if answer.checked.is_empty() {
         return html! { p.nothing { "No effect was tried." } };
     }
-    let acts_in = |name: &str| effects::find(name).map(|effect| effect.card().place);
+    let acts_in = |name: &str| effects::find(name).map(|effect| effect.spec().place);
     let places = [Some(Place::Contact), Some(Place::Drive), Some(Place::Sensor), None];
     html! {
         section #checked aria-labelledby="checked-title" {
@@ -67,7 +67,7 @@ fn checked(answer: &Answer) -> Markup {
     }
 }
 
-fn next(answer: &Answer, pictures: &Pictures) -> Markup {
+fn next(answer: &Diagnosis, pictures: &PlotData) -> Markup {
     let advice = advice(answer, pictures);
     html! {
         section #next aria-labelledby="next-title" {
@@ -77,10 +77,10 @@ fn next(answer: &Answer, pictures: &Pictures) -> Markup {
     }
 }
 
-fn advice(answer: &Answer, pictures: &Pictures) -> Vec<String> {
+fn advice(answer: &Diagnosis, pictures: &PlotData) -> Vec<String> {
     let mut advice: Vec<String> = Vec::new();
     advice.extend(pictures.experiment.as_ref().map(|next| next.text.clone()));
-    for rival in answer.rivals.iter().filter(|rival| !rival.separated_by.is_empty()) {
+    for rival in answer.alternatives.iter().filter(|rival| !rival.separated_by.is_empty()) {
         if !advice.contains(&rival.separated_by) {
             advice.push(rival.separated_by.clone());
         }
@@ -95,7 +95,7 @@ fn advice(answer: &Answer, pictures: &Pictures) -> Vec<String> {
 }
 
 /// Where something is there that nothing explains, more of the same place tells what it depends on.
-fn closer_look(answer: &Answer) -> String {
+fn closer_look(answer: &Diagnosis) -> String {
     let place = match worst(answer, None) {
         Some(place) if !place.states.is_empty() => format!("{} ({})", phase(place.phase), place.states),
         Some(place) => phase(place.phase).into(),

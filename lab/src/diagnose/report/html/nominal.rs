@@ -1,14 +1,14 @@
 //! The nominal values, given against fitted.
 
-use super::super::diagnosis::{Answer, Nominal};
+use super::super::diagnosis::{Diagnosis, Nominal};
 use super::names_physics;
-use super::words::estimate;
+use super::wording::estimate;
 use crate::page::quantity::plain;
 use crate::page::table::difference;
 use maud::{Markup, html};
 
 /// A table; a sentence where nothing was refitted.
-pub(super) fn section(answer: &Answer) -> Markup {
+pub(super) fn section(answer: &Diagnosis) -> Markup {
     if answer.nominal.is_empty() {
         return html! { p.nothing #nominal { "No nominal value was refitted: the recordings bound none of them." } };
     }

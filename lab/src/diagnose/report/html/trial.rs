@@ -1,8 +1,8 @@
 //! Before and after: what is drawn of each trial.
 
-use super::super::diagnosis::{Answer, Location, Pictures, Trace, Verdict};
+use super::super::diagnosis::{Diagnosis, Location, PlotData, Trace, Verdict};
 use super::names_physics;
-use super::words::{channel, heading, phase, share, stretch, worst};
+use super::wording::{channel, heading, phase, share, stretch, worst};
 use maud::{Markup, html};
 
 /// The channels of one trial.
@@ -24,7 +24,7 @@ pub(super) struct Line {
 }
 
 /// The simulations that differ from each other.
-pub(super) fn lines(answer: &Answer) -> Vec<Line> {
+pub(super) fn lines(answer: &Diagnosis) -> Vec<Line> {
     let mut lines = vec![Line { key: "given", name: "as given" }, Line { key: "refitted", name: "values refitted" }];
     if names_physics(answer) {
         lines.push(Line { key: "improved", name: "with named physics" });
@@ -33,12 +33,12 @@ pub(super) fn lines(answer: &Answer) -> Vec<Line> {
 }
 
 /// Those two whose residuals are compared: what the answer changes.
-pub(super) fn compared(answer: &Answer) -> [&'static str; 2] {
+pub(super) fn compared(answer: &Diagnosis) -> [&'static str; 2] {
     if names_physics(answer) { ["refitted", "improved"] } else { ["given", "refitted"] }
 }
 
 /// Traces by trial, in the order in which they came.
-pub(super) fn group<'a>(answer: &'a Answer, pictures: &'a Pictures) -> Vec<Trial<'a>> {
+pub(super) fn group<'a>(answer: &'a Diagnosis, pictures: &'a PlotData) -> Vec<Trial<'a>> {
     let mut trials: Vec<Trial<'a>> = Vec::new();
     for (index, trace) in pictures.traces.iter().enumerate().filter(|(_, trace)| !trace.time.is_empty()) {
         match trials.iter_mut().find(|trial| trial.name == trace.trial) {
@@ -55,7 +55,7 @@ pub(super) fn group<'a>(answer: &'a Answer, pictures: &'a Pictures) -> Vec<Trial
 }
 
 /// One fold a trial; the one with the largest place is open.
-pub(super) fn section(trials: &[Trial<'_>], answer: &Answer) -> Markup {
+pub(super) fn section(trials: &[Trial<'_>], answer: &Diagnosis) -> Markup {
     let opened = worst(answer, None)
         .and_then(|place| trials.iter().position(|trial| trial.name == place.trial))
         .unwrap_or_default();
@@ -91,7 +91,7 @@ fn fold(trial: &Trial<'_>, index: usize, opened: bool) -> Markup {
 }
 
 /// What the script copies into a trial.
-pub(super) fn templates(answer: &Answer) -> Markup {
+pub(super) fn templates(answer: &Diagnosis) -> Markup {
     html! {
         template #toolbar { (toolbar()) }
         @for name in ["force", "effort"] {
@@ -106,7 +106,7 @@ pub(super) fn templates(answer: &Answer) -> Markup {
     }
 }
 
-fn left(answer: &Answer) -> &'static str {
+fn left(answer: &Diagnosis) -> &'static str {
     match answer.verdict {
         Verdict::NoMismatch => {
             "Measured minus simulated. The grey band is ± 2 deviations of the sensors' noise: nothing leaves it for long."

@@ -1,33 +1,33 @@
 //! Readings that leap, and sensors that step too coarsely for the motion.
 
-use super::note::Note;
-use super::view::{View, quantile, range};
-use super::words::{count, digits, quantity};
+use super::checked_trial::{CheckedTrial, quantile, range};
+use super::ranked_finding::RankedFinding;
+use super::wording::{count, digits, quantity};
 use crate::rig::Rig;
 
 /// A leap is so many times what a row moves at most, ...
-const LEAP: f64 = 10.0;
+const JUMP_RATE_RATIO: f64 = 10.0;
 
 /// ... such a share of the whole range, ...
-const SHARE: f64 = 0.1;
+const JUMP_RANGE_FRACTION: f64 = 0.1;
 
 /// (from which it spoils the trial), ...
-const MOST: f64 = 0.5;
+const GRAVE_JUMP_FRACTION: f64 = 0.5;
 
 /// ... and so many steps of the sensor.
-const STEPS: f64 = 5.0;
+const JUMP_RESOLUTION_STEPS: f64 = 5.0;
 
 /// Steps over the whole motion below which a sensor is coarse, ...
-const COARSE: f64 = 20.0;
+const COARSE_STEPS: f64 = 20.0;
 
 /// ... and below which it shows next to nothing.
-const BLIND: f64 = 5.0;
+const BLIND_STEPS: f64 = 5.0;
 
 /// Deviations over which pure noise ranges: a hundredth left out at either end leaves 4.7.
-const IDLE: f64 = 5.5;
+const NOISE_RANGE_SIGMAS: f64 = 5.5;
 
 /// Positions that leap from one row to the next and stay there.
-pub fn jumps(view: &View<'_>) -> Option<Note> {
+pub fn jumps(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let (time, position) = (&view.recording.time, &view.recording.position);
     let rate = |row: usize| (position[row + 1] - position[row]).abs() / (time[row + 1] - time[row]);
     let rates: Vec<f64> = (0..position.len() - 1).map(rate).collect();
@@ -40,7 +40,9 @@ pub fn jumps(view: &View<'_>) -> Option<Note> {
     let leaps: Vec<usize> = (0..rates.len())
         .filter(|&row| {
             let leap = (position[row + 1] - position[row]).abs();
-            rates[row] > LEAP * usual && leap > SHARE * whole && leap > STEPS * view.raw.figures.position.resolution
+            rates[row] > JUMP_RATE_RATIO * usual
+                && leap > JUMP_RANGE_FRACTION * whole
+                && leap > JUMP_RESOLUTION_STEPS * view.raw.figures.position.resolution
         })
         .filter(|&row| !dropped(row))
         .collect();
@@ -54,20 +56,23 @@ pub fn jumps(view: &View<'_>) -> Option<Note> {
         count(leaps.len(), "leap"),
     );
     let share = leap.abs() / whole;
-    Some(Note { grave: share > MOST, ..Note::mild("jump", format!("{}, position", view.name()), share, text) })
+    Some(RankedFinding {
+        grave: share > GRAVE_JUMP_FRACTION,
+        ..RankedFinding::mild("jump", format!("{}, position", view.name()), share, text)
+    })
 }
 
 /// Sensors whose whole motion is a few of their steps.
-pub fn coarse(rig: &Rig, view: &View<'_>) -> Vec<Note> {
+pub fn coarse(rig: &Rig, view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
     let figures = view.raw.figures;
     let deepest = quantile(view.depth.clone(), 0.99).unwrap_or(0.0);
     // Where the tool touches, the way it goes in is what the contact shows by.
     let touches = view.force.is_some() && rig.contact.is_some_and(|contact| !contact.bilateral) && deepest > 0.0;
     let (motion, where_) = if touches { (deepest, " in contact") } else { (range(&view.depth), "") };
     let force = view.recording.force.as_ref().zip(figures.force);
-    let position = judge(motion, figures.position.resolution, figures.position.noise).map(|steps| Note {
-        grave: steps < BLIND,
-        ..Note::mild(
+    let position = judge(motion, figures.position.resolution, figures.position.noise).map(|steps| RankedFinding {
+        grave: steps < BLIND_STEPS,
+        ..RankedFinding::mild(
             "coarse position",
             format!("{}, position", view.name()),
             steps.recip(),
@@ -88,7 +93,7 @@ pub fn coarse(rig: &Rig, view: &View<'_>) -> Vec<Note> {
             quantity(whole, view.push),
             digits(steps),
         );
-        Some(Note { grave: steps < BLIND, ..Note::mild("coarse force", format!("{}, force", view.name()), steps.recip(), text) })
+        Some(RankedFinding { grave: steps < BLIND_STEPS, ..RankedFinding::mild("coarse force", format!("{}, force", view.name()), steps.recip(), text) })
     });
     [position, force].into_iter().flatten().collect()
 }
@@ -97,5 +102,5 @@ pub fn coarse(rig: &Rig, view: &View<'_>) -> Vec<Note> {
 fn judge(motion: f64, resolution: f64, noise: f64) -> Option<f64> {
     let steps = motion / resolution.max(noise);
     // A column that does not move at all, or by its noise only, is told elsewhere.
-    (motion > 0.0 && steps < COARSE && (steps > IDLE || resolution >= noise)).then_some(steps)
+    (motion > 0.0 && steps < COARSE_STEPS && (steps > NOISE_RANGE_SIGMAS || resolution >= noise)).then_some(steps)
 }

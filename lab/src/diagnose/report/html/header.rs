@@ -1,12 +1,12 @@
 //! The answer in one sentence, and what it names.
 
-use super::super::diagnosis::{Answer, Pictures, Verdict};
-use super::words::{channel, location, share, worst};
+use super::super::diagnosis::{Diagnosis, PlotData, Verdict};
+use super::wording::{channel, location, share, worst};
 use super::{effect, finding};
 use maud::{Markup, html};
 
 /// The head of the page.
-pub(super) fn header(answer: &Answer, pictures: &Pictures) -> Markup {
+pub(super) fn header(answer: &Diagnosis, pictures: &PlotData) -> Markup {
     let (class, word) = verdict(answer.verdict);
     html! {
         header {
@@ -33,7 +33,7 @@ fn verdict(verdict: Verdict) -> (&'static str, &'static str) {
 }
 
 /// What the verdict means for whoever has to act on it.
-fn meaning(answer: &Answer) -> Markup {
+fn meaning(answer: &Diagnosis) -> Markup {
     match answer.verdict {
         Verdict::NoMismatch => html! {
             "The simulation as given differs from these recordings by no more than the sensors' own noise. Nothing is located, and nothing has to be added or changed as far as they can tell."
@@ -52,7 +52,7 @@ fn meaning(answer: &Answer) -> Markup {
     }
 }
 
-fn unknown(answer: &Answer) -> Markup {
+fn unknown(answer: &Diagnosis) -> Markup {
     html! {
         "The recordings hold something real that the simulation lacks, and none of the " (answer.checked.len())
         " effects that were tried explains it. So it is not named: a wrong name would be worse than none."

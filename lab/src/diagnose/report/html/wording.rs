@@ -1,6 +1,6 @@
 //! Names and figures as a mechanic says them.
 
-use super::super::diagnosis::{Answer, Location, Phase};
+use super::super::diagnosis::{Diagnosis, Location, Phase};
 use crate::page::quantity::{between, percent, plain, rounded, with_interval};
 use maud::{Markup, html};
 
@@ -121,7 +121,7 @@ pub(super) fn stretch(location: &Location) -> Markup {
 }
 
 /// The location that holds the most; of one trial where one is named.
-pub(super) fn worst<'a>(answer: &'a Answer, trial: Option<&str>) -> Option<&'a Location> {
+pub(super) fn worst<'a>(answer: &'a Diagnosis, trial: Option<&str>) -> Option<&'a Location> {
     let of_trial = answer.locations.iter().filter(|location| trial.is_none_or(|trial| location.trial == trial));
     of_trial.filter(|location| location.share.is_finite()).max_by(|a, b| a.share.total_cmp(&b.share))
 }

@@ -1,9 +1,9 @@
 //! How well the models fit: four bars a channel.
 
-use super::super::diagnosis::{Answer, Goodness, Verdict};
+use super::super::diagnosis::{Diagnosis, FitQuality, Verdict};
 use super::axis::{Axis, across};
 use super::names_physics;
-use super::words::{channel, heading, multiple, share, times};
+use super::wording::{channel, heading, multiple, share, times};
 use crate::page::quantity::{plain, rounded};
 use maud::{Markup, html};
 
@@ -11,8 +11,8 @@ use maud::{Markup, html};
 const ROW: usize = 46;
 
 /// One picture a channel.
-pub(super) fn section(answer: &Answer) -> Markup {
-    let channels: Vec<&Goodness> =
+pub(super) fn section(answer: &Diagnosis) -> Markup {
+    let channels: Vec<&FitQuality> =
         if answer.channels.is_empty() { vec![&answer.fit] } else { answer.channels.iter().collect() };
     html! {
         section #fit aria-labelledby="fit-title" {
@@ -27,7 +27,7 @@ pub(super) fn section(answer: &Answer) -> Markup {
     }
 }
 
-fn figure(answer: &Answer, goodness: &Goodness) -> Markup {
+fn figure(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     let bars = bars(answer, goodness);
     let axis = Axis::over(bars.iter().map(|bar| bar.value));
     let told: Vec<String> =
@@ -47,25 +47,25 @@ fn figure(answer: &Answer, goodness: &Goodness) -> Markup {
     }
 }
 
-struct Bar {
+struct EffectEvidence {
     name: &'static str,
     class: &'static str,
     value: f64,
 }
 
-fn bars(answer: &Answer, goodness: &Goodness) -> Vec<Bar> {
+fn bars(answer: &Diagnosis, goodness: &FitQuality) -> Vec<EffectEvidence> {
     let mut bars = vec![
-        Bar { name: "as given", class: "given", value: goodness.as_given },
-        Bar { name: "values refitted", class: "refitted", value: goodness.refitted },
+        EffectEvidence { name: "as given", class: "given", value: goodness.as_given },
+        EffectEvidence { name: "values refitted", class: "refitted", value: goodness.refitted },
     ];
     if names_physics(answer) {
-        bars.push(Bar { name: "with named physics", class: "improved", value: goodness.improved });
+        bars.push(EffectEvidence { name: "with named physics", class: "improved", value: goodness.improved });
     }
-    bars.push(Bar { name: "noise floor", class: "floor", value: goodness.noise_floor });
+    bars.push(EffectEvidence { name: "noise floor", class: "floor", value: goodness.noise_floor });
     bars
 }
 
-fn drawn(axis: &Axis, goodness: &Goodness, bar: &Bar, row: usize) -> Markup {
+fn drawn(axis: &Axis, goodness: &FitQuality, bar: &EffectEvidence, row: usize) -> Markup {
     let top = row * ROW;
     let times_floor = bar.value / goodness.noise_floor;
     html! {
@@ -87,12 +87,12 @@ fn grid(axis: &Axis, decade: f64, top: usize) -> Markup {
     html! { line.decade x1=(across(at)) x2=(across(at)) y1=(top) y2=(top + 20) {} }
 }
 
-fn looked_at(goodness: &Goodness) -> String {
+fn looked_at(goodness: &FitQuality) -> String {
     let known = goodness.band_hz.is_finite() && goodness.band_hz > 0.0;
     if known { format!("Looked at up to {}. ", rounded(goodness.band_hz, "Hz", 3)) } else { String::new() }
 }
 
-fn explained(answer: &Answer, goodness: &Goodness) -> Markup {
+fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     let left = multiple(goodness.refitted / goodness.noise_floor);
     let name = channel(goodness.channel);
     html! {

@@ -1,16 +1,16 @@
 //! A trial as the checks see it: its rows, and its motion smoothed until the speed stands out of the noise.
 
-use crate::diagnose::signals::derivative_filter::Lens;
-use crate::diagnose::signals::uniform_trial::Raw;
+use crate::diagnose::signals::derivative_filter::DerivativeFilter;
+use crate::diagnose::signals::uniform_trial::UniformTrial;
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
 
 /// A trial under the checks. The smoothed columns are of equal length.
-pub struct View<'a> {
+pub struct CheckedTrial<'a> {
     /// As recorded.
     pub recording: &'a Recording,
     /// On an even clock.
-    pub raw: &'a Raw,
+    pub raw: &'a UniformTrial,
     /// "m" or "rad".
     pub length: &'static str,
     /// "N" or "N m".
@@ -32,28 +32,30 @@ pub struct View<'a> {
 }
 
 /// Share of the usual speed that noise may leave in it.
-const CALM: f64 = 0.03;
+const MAX_SPEED_NOISE_FRACTION: f64 = 0.03;
 
 /// Narrowest blur, in periods.
-const SHARP: f64 = 1.5;
+const MIN_WIDTH_PERIODS: f64 = 1.5;
 
 /// Widest blur, as a share of the trial.
-const WIDE: f64 = 0.004;
+const MAX_WIDTH_FRACTION: f64 = 0.004;
 
-impl<'a> View<'a> {
+impl<'a> CheckedTrial<'a> {
     /// Looks at a trial.
-    pub fn new(rig: &Rig, recording: &'a Recording, raw: &'a Raw) -> Self {
+    pub fn new(rig: &Rig, recording: &'a Recording, raw: &'a UniformTrial) -> Self {
         let period = raw.period;
         let shaken = raw.figures.position.noise;
         let usual = travel(&raw.position) / (raw.len().max(2) as f64 * period);
-        let mut blur = SHARP * period;
+        let mut filter_width = MIN_WIDTH_PERIODS * period;
         let lens = loop {
-            let stride = (blur / (2.0 * period)).round().max(1.0) as usize;
-            let lens = Lens::new(blur, period, stride);
-            if lens.noise()[1] * shaken <= CALM * usual || 2.0 * blur > WIDE * raw.len() as f64 * period {
+            let stride = (filter_width / (2.0 * period)).round().max(1.0) as usize;
+            let lens = DerivativeFilter::new(filter_width, period, stride);
+            if lens.noise()[1] * shaken <= MAX_SPEED_NOISE_FRACTION * usual
+                || 2.0 * filter_width > MAX_WIDTH_FRACTION * raw.len() as f64 * period
+            {
                 break lens;
             }
-            blur *= 2.0;
+            filter_width *= 2.0;
         };
         let surface = rig.surface();
         let [level, slope, _] = lens.noise();
@@ -67,11 +69,11 @@ impl<'a> View<'a> {
             length,
             push,
             step: lens.step(),
-            depth: lens.level(&raw.position).into_iter().map(|position| position - surface).collect(),
-            speed: lens.slope(&raw.position),
-            bend: lens.bend(&raw.position),
-            force: raw.force.as_ref().map(|force| lens.level(force)),
-            effort: raw.effort.as_ref().map(|effort| lens.held(effort)),
+            depth: lens.smooth(&raw.position).into_iter().map(|position| position - surface).collect(),
+            speed: lens.first_derivative(&raw.position),
+            bend: lens.second_derivative(&raw.position),
+            force: raw.force.as_ref().map(|force| lens.smooth(force)),
+            effort: raw.effort.as_ref().map(|effort| lens.smooth_held(effort)),
             noise: [level * shaken, slope * shaken, level * raw.figures.force.map_or(0.0, |force| force.noise)],
         }
     }

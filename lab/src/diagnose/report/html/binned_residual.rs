@@ -1,8 +1,8 @@
 //! Where the mismatch lies along one quantity, as a small picture of columns.
 
-use super::super::diagnosis::Map;
+use super::super::diagnosis::BinnedResidual;
 use super::axis::across;
-use super::words::{share, times};
+use super::wording::{share, times};
 use crate::page::quantity::unit;
 use maud::{Markup, html};
 
@@ -23,7 +23,7 @@ const RISES: f64 = 1.5;
 const WIDEST_LINEAR: f64 = 20.0;
 
 /// The picture; `improved` where a model with named physics is to be shown beside the one without.
-pub(super) fn figure(map: &Map, improved: bool) -> Markup {
+pub(super) fn figure(map: &BinnedResidual, improved: bool) -> Markup {
     let scale = Scale::of(map, improved);
     html! {
         figure.map {
@@ -38,7 +38,7 @@ pub(super) fn figure(map: &Map, improved: bool) -> Markup {
     }
 }
 
-fn title(map: &Map) -> String {
+fn title(map: &BinnedResidual) -> String {
     let along = match map.along {
         "phase" => "By phase of contact",
         "depth" => "By depth",
@@ -51,7 +51,7 @@ fn title(map: &Map) -> String {
     if unit.is_empty() { along.into() } else { format!("{along}, {unit}") }
 }
 
-fn most(map: &Map) -> String {
+fn most(map: &BinnedResidual) -> String {
     let bins = map.share.iter().zip(&map.labels).zip(&map.before);
     let risen = bins.filter(|((share, _), before)| share.is_finite() && **before >= RISES).map(|(bin, _)| bin);
     match risen.max_by(|a, b| a.0.total_cmp(b.0)) {
@@ -65,12 +65,12 @@ fn most(map: &Map) -> String {
     }
 }
 
-fn label(map: &Map, improved: bool) -> String {
+fn label(map: &BinnedResidual, improved: bool) -> String {
     let bins = (0..map.labels.len()).map(|bin| told(map, bin, improved));
     format!("{}, residual power over the noise. {}.", title(map), bins.collect::<Vec<_>>().join("; "))
 }
 
-fn told(map: &Map, bin: usize, improved: bool) -> String {
+fn told(map: &BinnedResidual, bin: usize, improved: bool) -> String {
     let after = if improved { format!(", {} after", times(map.after[bin])) } else { String::new() };
     format!(
         "{}: {} times noise before{after}, {} of what is missing",
@@ -88,7 +88,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn of(map: &Map, improved: bool) -> Self {
+    fn of(map: &BinnedResidual, improved: bool) -> Self {
         let after = map.after.iter().filter(|_| improved);
         let most = map.before.iter().chain(after).filter(|value| value.is_finite()).fold(2.0_f64, |a, b| a.max(*b));
         let logarithmic = most > WIDEST_LINEAR;
@@ -138,7 +138,7 @@ fn noise(scale: &Scale) -> Markup {
     }
 }
 
-fn column(map: &Map, scale: &Scale, bin: usize, improved: bool) -> Markup {
+fn column(map: &BinnedResidual, scale: &Scale, bin: usize, improved: bool) -> Markup {
     let pitch = (RIGHT - LEFT) / map.labels.len() as f64;
     let (start, inner) = (LEFT + (bin as f64 + 0.1) * pitch, 0.8 * pitch);
     let each = if improved { 0.5 * inner } else { inner };
@@ -156,7 +156,7 @@ fn column(map: &Map, scale: &Scale, bin: usize, improved: bool) -> Markup {
 }
 
 /// Whether the share of a bin is written: if it is big, and if beside it there is room or nothing bigger.
-fn is_labelled(map: &Map, bin: usize) -> bool {
+fn is_labelled(map: &BinnedResidual, bin: usize) -> bool {
     let neighbours = [bin.checked_sub(1), Some(bin + 1)].into_iter().flatten();
     let bigger = neighbours.filter_map(|other| map.share.get(other).map(|share| (other, *share)));
     // Of two that are equal the first is written.
@@ -178,7 +178,7 @@ fn pillar(class: &str, start: f64, width: f64, top: Option<f64>) -> Markup {
 
 /// Labels of the bins. Where they do not fit side by side they take two rows, and where these do not do either, only
 /// every n-th is written.
-fn ticks(map: &Map) -> Markup {
+fn ticks(map: &BinnedResidual) -> Markup {
     let bins = map.labels.len();
     let longest = map.labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) as f64;
     let crowd = (longest + 1.5) * LETTER * bins as f64 / NARROWEST;

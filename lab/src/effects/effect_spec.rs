@@ -77,26 +77,26 @@ pub struct Parameter {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Limit {
     /// Nothing more.
-    Card,
+    BoundsOnly,
     /// A time that is longer than the step of the analysis: below it there is nothing to tell it from.
-    Step,
+    ResolvableTime,
     /// The end of a channel's range, which the channel has to have reached.
-    Range,
+    ReachedRange,
     /// A frequency that comes round twice within a trial, or it is a drift.
-    Turns,
+    RepeatedCycles,
     /// A stiffness that carries the tool: it swings faster than the tool moves, or it carries nothing.
-    Swing,
+    ResonanceInBand,
     /// A pitch that comes round within the way, or it is a slope, and is longer than two steps of the encoder, or it is theirs.
-    Way,
+    RepeatedPitch,
     /// A speed at which the encoder steps within the filter, or it is the encoder's.
-    Pace,
+    MinSpeed,
 }
 
 impl Parameter {
     /// A parameter that is fitted.
     #[must_use]
     pub const fn new(name: &'static str, unit: Word, meaning: &'static str, low: f64, high: f64) -> Self {
-        Self { name, unit, meaning, low, high, fixed: false, each_trial: false, limit: Limit::Card }
+        Self { name, unit, meaning, low, high, fixed: false, each_trial: false, limit: Limit::BoundsOnly }
     }
 
     /// The same within what a recording can show of it.
@@ -122,7 +122,7 @@ impl Parameter {
             high: f64::INFINITY,
             fixed: true,
             each_trial: false,
-            limit: Limit::Card,
+            limit: Limit::BoundsOnly,
         }
     }
 }
@@ -140,7 +140,7 @@ pub struct Form {
 
 /// What is known of an effect.
 #[derive(Debug)]
-pub struct Card {
+pub struct EffectSpec {
     /// As the contract spells it.
     pub name: &'static str,
     /// Where it acts.
@@ -148,7 +148,7 @@ pub struct Card {
     /// When it acts there.
     pub stage: Stage,
     /// How often it can be there.
-    pub most: usize,
+    pub max_instances: usize,
     /// One plain sentence: what a person who has it on the bench would say of it.
     pub statement: &'static str,
     /// Its laws, the simplest first.

@@ -1,27 +1,27 @@
 //! Readings that stand still where they should move: constant columns, frozen channels, clipping.
 
-use super::note::Note;
-use super::view::{View, bounds, middle, quantile, range};
-use super::words::{digits, quantity};
+use super::checked_trial::{CheckedTrial, bounds, middle, quantile, range};
+use super::ranked_finding::RankedFinding;
+use super::wording::{digits, quantity};
 use crate::sensors::white_noise;
 
 /// Equal rows that are worth a look.
-const RUN: usize = 8;
+const MIN_EQUAL_ROWS: usize = 8;
 
 /// Equal rows that noise of a step or more never gives.
-const FROZEN: usize = 64;
+const FROZEN_ROWS: usize = 64;
 
 /// White noise over the sensor's step from which neighbouring rows differ.
-const NOISY: f64 = 0.7;
+const NOISE_OVER_STEP: f64 = 0.7;
 
 /// Share of its range that a channel should have moved by, or that another moves by, while it stands.
-const SHARE: f64 = 0.05;
+const MIN_MOVED_FRACTION: f64 = 0.05;
 
 /// The same away from the channel's own ends, where a standing reading is less suspicious.
-const LARGE: f64 = 0.25;
+const MOVED_FRACTION_INSIDE_RANGE: f64 = 0.25;
 
 /// Columns that do not change at all.
-pub fn dead(view: &View<'_>) -> Vec<Note> {
+pub fn dead(view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
     let recording = view.recording;
     let columns = [
         ("dead position", "position", Some(&recording.position)),
@@ -36,7 +36,7 @@ pub fn dead(view: &View<'_>) -> Vec<Note> {
             "The {name} column is {} in every row: nothing was measured there. Check the channel, or leave the column out.",
             quantity(low, unit),
         );
-        (low == high).then(|| Note::grave(kind, format!("{}, {name}", view.name()), 1.0, text))
+        (low == high).then(|| RankedFinding::grave(kind, format!("{}, {name}", view.name()), 1.0, text))
     });
     dead.collect()
 }
@@ -57,19 +57,19 @@ fn runs(values: &[f64]) -> Vec<Run> {
             _ => runs.push(Run { first: row, end: row + 1 }),
         }
     }
-    runs.retain(|run| run.end - run.first >= RUN && run.end - run.first < values.len());
+    runs.retain(|run| run.end - run.first >= MIN_EQUAL_ROWS && run.end - run.first < values.len());
     runs
 }
 
 /// Channels that stand still for a while though they should not.
-pub fn stuck(view: &View<'_>) -> Vec<Note> {
+pub fn stuck(view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
     let force = view.recording.force.as_ref().map(|force| force_stuck(view, force));
     let effort = view.recording.effort.as_ref().map(|effort| effort_clipped(view, effort));
     [Some(position_stuck(view)), force, effort].into_iter().flatten().flatten().collect()
 }
 
 /// Adds the rows of runs up and words them: at the channel's own end clipped, else stuck.
-fn word(view: &View<'_>, name: &str, values: &[f64], found: &[Run]) -> Option<Note> {
+fn word(view: &CheckedTrial<'_>, name: &str, values: &[f64], found: &[Run]) -> Option<RankedFinding> {
     let longest = found.iter().copied().max_by_key(|run| run.end - run.first)?;
     let (low, high) = bounds(values);
     let value = values[longest.first];
@@ -117,28 +117,28 @@ fn word(view: &View<'_>, name: &str, values: &[f64], found: &[Run]) -> Option<No
     };
     // A known limit of force or effort is an effect of its own; a position that is not true spoils all there is.
     let grave = name == "position" && share > 0.01 || share > 0.25 && name != "effort";
-    Some(Note { grave, ..Note::mild(kind, place, share, text) })
+    Some(RankedFinding { grave, ..RankedFinding::mild(kind, place, share, text) })
 }
 
 /// Whether `values` carry noise that would show in every row.
-fn is_noisy(view: &View<'_>, values: &[f64], resolution: f64) -> bool {
+fn is_noisy(view: &CheckedTrial<'_>, values: &[f64], resolution: f64) -> bool {
     let noise = white_noise(&view.recording.time, values);
-    noise > NOISY * resolution && noise > 1e-5 * range(values)
+    noise > NOISE_OVER_STEP * resolution && noise > 1e-5 * range(values)
 }
 
 /// A column of the even clock at a recorded row: without its drop-outs.
-fn at(view: &View<'_>, column: &[f64], row: usize) -> f64 {
+fn at(view: &CheckedTrial<'_>, column: &[f64], row: usize) -> f64 {
     let place = (view.recording.time[row] - view.raw.origin) / view.raw.period;
     column[(place.round().max(0.0) as usize).min(column.len() - 1)]
 }
 
-fn force_stuck(view: &View<'_>, force: &[f64]) -> Option<Note> {
+fn force_stuck(view: &CheckedTrial<'_>, force: &[f64]) -> Option<RankedFinding> {
     let channel = view.raw.figures.force?;
     let position = &view.recording.position;
     let inside: Vec<f64> = view.depth.iter().copied().filter(|depth| *depth > 0.0).collect();
     let whole = range(force);
-    let slope = whole / range(if inside.len() > RUN { &inside } else { &view.depth });
-    let least = (SHARE * whole).max(4.0 * channel.resolution).max(6.0 * channel.noise);
+    let slope = whole / range(if inside.len() > MIN_EQUAL_ROWS { &inside } else { &view.depth });
+    let least = (MIN_MOVED_FRACTION * whole).max(4.0 * channel.resolution).max(6.0 * channel.noise);
     let noisy = is_noisy(view, force, channel.resolution);
     let ends = bounds(force);
     // What is read where nothing touches is the middle of the lower half, whatever the surface.
@@ -149,14 +149,14 @@ fn force_stuck(view: &View<'_>, force: &[f64]) -> Option<Note> {
         let is_end = force[run.first] == ends.0 || force[run.first] == ends.1;
         let moved = slope * (high - low);
         // Damping can hold a force still for a moment while the tool slows down: only at its end is a little enough.
-        let enough = if is_end { least } else { (LARGE * whole).max(2.0 * least) };
-        (!is_idle && slope.is_finite() && moved > enough) || noisy && run.end - run.first >= FROZEN
+        let enough = if is_end { least } else { (MOVED_FRACTION_INSIDE_RANGE * whole).max(2.0 * least) };
+        (!is_idle && slope.is_finite() && moved > enough) || noisy && run.end - run.first >= FROZEN_ROWS
     };
     let found: Vec<Run> = runs(force).into_iter().filter(standing).collect();
     word(view, "force", force, &found)
 }
 
-fn position_stuck(view: &View<'_>) -> Option<Note> {
+fn position_stuck(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let position = &view.recording.position;
     let time = &view.recording.time;
     let channel = view.raw.figures.position;
@@ -170,7 +170,7 @@ fn position_stuck(view: &View<'_>) -> Option<Note> {
             rise = rise.max(now - least);
         }
         // A held contact relaxes: its force falls. One that rises means motion.
-        rise > (4.0 * SHARE * range(force)).max(8.0 * sensor.noise)
+        rise > (4.0 * MIN_MOVED_FRACTION * range(force)).max(8.0 * sensor.noise)
     };
     let travelled = |run: &Run| {
         let Some(velocity) = &view.recording.velocity else { return false };
@@ -181,7 +181,7 @@ fn position_stuck(view: &View<'_>) -> Option<Note> {
         let usual = quantile(velocity.iter().map(|speed| speed.abs()).collect(), 0.95);
         // A small bias of the velocity adds up over a long rest, and means nothing.
         let is_fast = middle(seen) > usual.map(|usual| 0.1 * usual);
-        is_fast && way.abs() > (SHARE * range(position)).max(5.0 * channel.resolution)
+        is_fast && way.abs() > (MIN_MOVED_FRACTION * range(position)).max(5.0 * channel.resolution)
     };
     let standing = |run: &Run| rise(run) && is_abrupt(position, *run, channel.resolution) || travelled(run);
     let found: Vec<Run> = runs(position).into_iter().filter(standing).collect();
@@ -196,23 +196,23 @@ fn is_abrupt(position: &[f64], run: Run, resolution: f64) -> bool {
     let (low, high) = bounds(position);
     let ends = position[run.first] == low || position[run.first] == high || run.end == position.len();
     let leap = position.get(run.end).map_or(0.0, |next| (next - position[run.first]).abs());
-    let before = run.first.saturating_sub(RUN);
+    let before = run.first.saturating_sub(MIN_EQUAL_ROWS);
     let way = (position[run.first] - position[before]).abs();
-    let entry = way > (0.25 * usual * RUN as f64).max(2.0 * resolution);
+    let entry = way > (0.25 * usual * MIN_EQUAL_ROWS as f64).max(2.0 * resolution);
     leap > (4.0 * fast).max(4.0 * resolution) || ends && entry
 }
 
-fn effort_clipped(view: &View<'_>, effort: &[f64]) -> Option<Note> {
+fn effort_clipped(view: &CheckedTrial<'_>, effort: &[f64]) -> Option<RankedFinding> {
     let (low, high) = bounds(effort);
     let mut levels = effort.to_vec();
     levels.sort_unstable_by(f64::total_cmp);
     levels.dedup();
     // A switched drive is always at one of its levels.
-    if levels.len() < RUN {
+    if levels.len() < MIN_EQUAL_ROWS {
         return None;
     }
     let position = &view.recording.position;
-    let least = (SHARE * range(position)).max(4.0 * view.raw.figures.position.resolution);
+    let least = (MIN_MOVED_FRACTION * range(position)).max(4.0 * view.raw.figures.position.resolution);
     let at_end = |run: &Run| {
         let value = effort[run.first];
         let (from, to) = bounds(&position[run.first..run.end]);

@@ -1,15 +1,15 @@
 //! Columns in other units than SI: millimetres, degrees.
 
-use super::note::Note;
-use super::view::{View, quantile, range};
-use super::words::{digits, quantity};
+use super::checked_trial::{CheckedTrial, quantile, range};
+use super::ranked_finding::RankedFinding;
+use super::wording::{digits, quantity};
 use crate::rig::{Coordinate, Rig};
 
 /// By how much a nominal stiffness may be off before a factor is no longer that factor.
-const NEAR: f64 = 2.5;
+const FACTOR_TOLERANCE: f64 = 2.5;
 
 /// Forces that are off the rig's own stiffness by a factor that units make.
-pub fn suspicion(rig: &Rig, view: &View<'_>) -> Option<Note> {
+pub fn suspicion(rig: &Rig, view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let contact = rig.contact.filter(|contact| contact.stiffness > 0.0)?;
     let force = range(view.force.as_ref()?);
     let depth = match contact.bilateral {
@@ -21,7 +21,7 @@ pub fn suspicion(rig: &Rig, view: &View<'_>) -> Option<Note> {
         return None;
     }
     let ratio = force / expected;
-    let near = |factor: f64| (ratio / factor).max(factor / ratio) < NEAR;
+    let near = |factor: f64| (ratio / factor).max(factor / ratio) < FACTOR_TOLERANCE;
     let (turn, angle) = (57.295_78, rig.coordinate == Coordinate::Rotary);
     let guess = if near(1e-3) && angle {
         "the position is in thousandths of a radian or the torque in kN m"
@@ -42,5 +42,5 @@ pub fn suspicion(rig: &Rig, view: &View<'_>) -> Option<Note> {
         quantity(expected, view.push),
         digits(ratio),
     );
-    Some(Note::grave("units", view.name(), ratio.ln().abs(), text))
+    Some(RankedFinding::grave("units", view.name(), ratio.ln().abs(), text))
 }

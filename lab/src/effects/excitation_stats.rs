@@ -2,7 +2,7 @@
 
 /// What the recordings and the nominal model fitted to them measure.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub struct ExcitationStats {
     /// Greatest depth in contact, m or rad; zero without contact.
     pub depth: f64,
     /// Root mean square of the speed in contact, or of all the motion where nothing is touched.
@@ -22,7 +22,7 @@ pub struct Scene {
     /// The same for the drive's balance, s.
     pub drive_step: f64,
     /// Speed at which the encoder steps once within the filter through which laws see the drive.
-    pub pace: f64,
+    pub one_step_speed: f64,
     /// Step of the encoder, m or rad.
     pub resolution: f64,
     /// Seconds of one raw sample.
@@ -53,43 +53,43 @@ pub struct Scene {
     pub is_bilateral: bool,
 }
 
-impl Scene {
+impl ExcitationStats {
     /// The slowest swing of a link that can be told, rad/s, the whole moved mass on it: the corner of the filter through which the
     /// drive is looked at. Motor against tool swings at twice that at the least; a link that is softer smooths the balance of its
     /// noise, and seems to explain it.
     #[must_use]
-    pub fn link_rate(&self) -> f64 {
+    pub fn min_link_rate(&self) -> f64 {
         std::f64::consts::TAU * 0.2 / self.drive_step
     }
 
     /// The slowest speed at which an encoder still tells how fast: a quarter of a step within the filter.
     #[must_use]
     pub fn slowest(&self) -> f64 {
-        0.25 * self.pace
+        0.25 * self.one_step_speed
     }
 
     /// Whether the tool came back far enough for what differs between in and out to show.
     #[must_use]
-    pub fn comes_back(&self) -> bool {
+    pub fn has_unloading(&self) -> bool {
         self.way_back > 0.02
     }
 
     /// Whether the tool was free for so long that what the sensor shows then is seen behind the filter.
     #[must_use]
-    pub fn sees_zero(&self) -> bool {
+    pub fn shows_sensor_zero(&self) -> bool {
         self.free_span * self.duration > 10.0 * self.step
     }
 
     /// Whether early and late can be told from shallow and deep: only where the same depth was visited again.
     #[must_use]
-    pub fn tells_time(&self) -> bool {
+    pub fn separates_time_from_depth(&self) -> bool {
         self.visits >= 3
     }
 }
 
 /// Where a search starts.
 ///
-/// Where `sizes` is not empty, the effect is linear in the parameters of those indices: it is tried with each of them
+/// Where `linear_parameters` is not empty, the effect is linear in the parameters of those indices: it is tried with each of them
 /// alone at its value here, and their true values follow by linear least squares. Where it is empty, the values are one
 /// point of a grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,20 +97,20 @@ pub struct Start {
     /// One value a parameter.
     pub values: Vec<f64>,
     /// Indices of the linear ones.
-    pub sizes: Vec<usize>,
+    pub linear_parameters: Vec<usize>,
 }
 
 impl Start {
     /// A point of a grid.
     #[must_use]
     pub fn at(values: &[f64]) -> Self {
-        Self { values: values.to_vec(), sizes: Vec::new() }
+        Self { values: values.to_vec(), linear_parameters: Vec::new() }
     }
 
-    /// A point that is linear in the parameters `sizes`.
+    /// A point that is linear in the parameters `linear_parameters`.
     #[must_use]
-    pub fn sized(values: &[f64], sizes: &[usize]) -> Self {
-        Self { values: values.to_vec(), sizes: sizes.to_vec() }
+    pub fn sized(values: &[f64], linear: &[usize]) -> Self {
+        Self { values: values.to_vec(), linear_parameters: linear.to_vec() }
     }
 }
 
@@ -125,7 +125,7 @@ pub enum Abscissa {
 
 /// Where a form that repeats shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Weight {
+pub enum ToneWeight {
     /// Everywhere.
     Even,
     /// In contact.
@@ -136,11 +136,11 @@ pub enum Weight {
 
 /// The frequencies among which a form that repeats is searched: the residual's own spectrum says which are worth a trial.
 #[derive(Debug, Clone)]
-pub struct Tones {
+pub struct FrequencySearch {
     /// Along what it repeats.
     pub abscissa: Abscissa,
     /// Where it shows.
-    pub weight: Weight,
+    pub weight: ToneWeight,
     /// Equally spaced turns a unit of the abscissa: first, spacing, count.
     pub frequencies: Vec<(f64, f64, usize)>,
     /// Size of each part of the wave.
@@ -151,7 +151,7 @@ pub struct Tones {
     pub by_period: bool,
 }
 
-impl Tones {
+impl FrequencySearch {
     /// Where the search starts at `frequency`.
     #[must_use]
     pub fn start(&self, frequency: f64) -> Start {
@@ -159,7 +159,7 @@ impl Tones {
         let parts = 2 * self.harmonics;
         let mut values = vec![self.size; parts];
         values.push(last);
-        Start { values, sizes: (0..parts).collect() }
+        Start { values, linear_parameters: (0..parts).collect() }
     }
 }
 

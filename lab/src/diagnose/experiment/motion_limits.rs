@@ -1,13 +1,13 @@
 //! What the recordings did, within which an experiment stays.
 
-use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::model::{Model, index};
-use crate::diagnose::signals::derivative_filter::Lens;
-use crate::diagnose::signals::filtered_trial::Track;
+use crate::diagnose::signals::derivative_filter::DerivativeFilter;
+use crate::diagnose::signals::filtered_trial::FilteredTrial;
 
 /// What the recordings did: an experiment that stays within it asks nothing of the rig that it has not borne.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Room {
+pub struct MotionLimits {
     /// Where the first recording began, m or rad.
     pub start: f64,
     /// Least position reached.
@@ -29,51 +29,51 @@ pub struct Room {
 }
 
 /// Deviations of its noise by which a peak is lowered before it counts as reached.
-const DOUBT: f64 = 4.0;
+const PEAK_NOISE_SIGMAS: f64 = 4.0;
 
 /// Share of the reach of a recording below which a depth, or free space, is none.
-const SLIGHT: f64 = 0.02;
+const MIN_RANGE_FRACTION: f64 = 0.02;
 
 /// Share of the analysis' corner frequency below which a sine passes it nearly whole.
-const WHOLE: f64 = 0.6;
+const PASSBAND_FRACTION: f64 = 0.6;
 
-impl Room {
-    /// Of the recordings of `study`, touching as `model` with `values` says; `None` where nothing moved.
+impl MotionLimits {
+    /// Of the recordings of `problem`, touching as `model` with `values` says; `None` where nothing moved.
     #[must_use]
-    pub fn of(study: &Study, model: &Model, values: &[f64]) -> Option<Self> {
-        let trials = &study.studio.trials;
+    pub fn of(problem: &IdentificationProblem, model: &Model, values: &[f64]) -> Option<Self> {
+        let trials = &problem.sampler.trials;
         let both = || trials.iter().flat_map(|trial| [&trial.contact, &trial.drive]);
         let (low, high) = both()
             .flat_map(positions)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), position| (low.min(position), high.max(position)));
-        let noise = study.studio.raws.iter().map(|raw| raw.figures.position.noise).fold(0.0, f64::max);
-        let reached = |pick: &dyn Fn(&Track) -> &Vec<f64>, order: usize| {
-            let sharp = |lens: &Lens, tracks: &mut dyn Iterator<Item = &Track>| {
-                let peak = tracks.flat_map(|track| peaks(track, pick(track))).fold(0.0, f64::max);
+        let noise = problem.sampler.uniform_trials.iter().map(|raw| raw.figures.position.noise).fold(0.0, f64::max);
+        let reached = |pick: &dyn Fn(&FilteredTrial) -> &Vec<f64>, order: usize| {
+            let sharp = |filter: &DerivativeFilter, filtered_trials: &mut dyn Iterator<Item = &FilteredTrial>| {
+                let peak = filtered_trials.flat_map(|filtered| peaks(filtered, pick(filtered))).fold(0.0, f64::max);
                 // What noise made of the peak is not what the rig bore.
-                peak - DOUBT * noise * lens.noise()[order]
+                peak - PEAK_NOISE_SIGMAS * noise * filter.noise()[order]
             };
-            let contact = sharp(&study.studio.lens, &mut trials.iter().map(|trial| &trial.contact));
-            contact.max(sharp(&study.studio.drive_lens, &mut trials.iter().map(|trial| &trial.drive)))
+            let contact = sharp(&problem.sampler.contact_filter, &mut trials.iter().map(|trial| &trial.contact));
+            contact.max(sharp(&problem.sampler.drive_filter, &mut trials.iter().map(|trial| &trial.drive)))
         };
         let first = trials.first()?.contact.position.first()?;
         let range = high - low;
         let surface = values[index::SURFACE];
-        let touched = model.contact.is_some_and(|bilateral| bilateral || high - surface > SLIGHT * range);
+        let touched = model.contact.is_some_and(|bilateral| bilateral || high - surface > MIN_RANGE_FRACTION * range);
         let seconds = trials.iter().map(|t| t.contact.len() as f64 * t.contact.step).fold(f64::MIN_POSITIVE, f64::max);
         // However noise hides them: the way was made in that time, and the speed reached within that way.
-        let speed = reached(&|track| &track.velocity, 1).max(range / seconds);
-        let acceleration = reached(&|track| &track.acceleration, 2).max(0.5 * speed * speed / range);
+        let speed = reached(&|filtered| &filtered.velocity, 1).max(range / seconds);
+        let acceleration = reached(&|filtered| &filtered.acceleration, 2).max(0.5 * speed * speed / range);
         let room = Self {
             start: first.clamp(low, high),
             low,
             high,
             surface: touched.then(|| surface.clamp(low, high)),
-            free: !touched || (model.contact == Some(false) && surface - low > SLIGHT * range),
+            free: !touched || (model.contact == Some(false) && surface - low > MIN_RANGE_FRACTION * range),
             speed,
             acceleration,
             seconds,
-            band: WHOLE * study.studio.lens.corner(),
+            band: PASSBAND_FRACTION * problem.sampler.contact_filter.cutoff_hz(),
         };
         (range > 0.0 && room.speed > 0.0 && room.acceleration > 0.0).then_some(room)
     }
@@ -106,10 +106,10 @@ impl Room {
     }
 }
 
-fn positions(track: &Track) -> impl Iterator<Item = f64> {
-    track.position.iter().zip(&track.seen).filter(|(_, seen)| **seen).map(|(position, _)| *position)
+fn positions(filtered: &FilteredTrial) -> impl Iterator<Item = f64> {
+    filtered.position.iter().zip(&filtered.valid).filter(|(_, valid)| **valid).map(|(position, _)| *position)
 }
 
-fn peaks<'a>(track: &'a Track, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-    values.iter().zip(&track.seen).filter(|(_, seen)| **seen).map(|(value, _)| value.abs())
+fn peaks<'a>(filtered: &'a FilteredTrial, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    values.iter().zip(&filtered.valid).filter(|(_, valid)| **valid).map(|(value, _)| value.abs())
 }

@@ -1,9 +1,9 @@
 //! What joins motor and tool, where something gives or plays between them, followed step by step.
 
-use crate::effects::{Course, Memory, Push};
+use crate::effects::{CubicSegment, DriveState, EffectState};
 
 /// Motor and tool, coupled by a spring with a gap.
-pub struct Link {
+pub struct TwoMassLink {
     /// Of the spring.
     pub stiffness: f64,
     /// Beside the spring.
@@ -17,17 +17,17 @@ pub struct Link {
 }
 
 /// Most integration steps between two samples: beyond them the link is as good as rigid.
-const MOST_STEPS: f64 = 64.0;
+const MAX_SUBSTEPS: f64 = 64.0;
 
-impl Link {
+impl TwoMassLink {
     /// Runs the motor's side over the last step and replaces the effort by what the link transmits.
-    pub fn carry(&self, memory: &mut Memory, push: &mut Push) {
+    pub fn carry(&self, memory: &mut EffectState, push: &mut DriveState) {
         // memory: motor position, its velocity, tool position, tool velocity, effort an instant ago, its rate, whether known.
         if self.stiffness <= 0.0 || self.inertia <= 0.0 {
             return;
         }
         let steps = (push.step * self.fastest() / 0.2).ceil();
-        if steps > MOST_STEPS {
+        if steps > MAX_SUBSTEPS {
             return;
         }
         push.inertia -= self.inertia;
@@ -44,7 +44,7 @@ impl Link {
         let lightness = span / self.inertia;
         let mix = |from: f64, to: f64, part: f64| from + part * (to - from);
         // The tool between two samples, by position and rate at both: a chord would leave k step^2 / 12 of false inertia.
-        let way = Course::smooth([tool, tool_speed], [push.position, push.velocity], push.step);
+        let way = CubicSegment::smooth([tool, tool_speed], [push.position, push.velocity], push.step);
         let effort = push.effort_since([effort, effort_rate]);
         for step in 0..steps as usize {
             let start = step as f64 * part;

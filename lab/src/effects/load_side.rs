@@ -2,11 +2,11 @@
 
 /// What is seen of the tool over a whole trial: what its side of a transmission bears follows from it, without a motor.
 #[derive(Debug, Clone, Copy)]
-pub struct Side<'a> {
+pub struct LoadSideSignals<'a> {
     /// Seconds between rows.
     pub step: f64,
     /// Width of the smoothing filter, s.
-    pub blur: f64,
+    pub filter_width: f64,
     /// Inertia of motor and tool.
     pub inertia: f64,
     /// Viscous friction of the tool's side.
@@ -23,7 +23,7 @@ pub struct Side<'a> {
     pub noise: [f64; 3],
 }
 
-impl Side<'_> {
+impl LoadSideSignals<'_> {
     /// What the transmission gives a tool of inertia `tool` at row `at`.
     #[must_use]
     pub fn borne(&self, tool: f64, at: usize) -> f64 {
@@ -32,7 +32,7 @@ impl Side<'_> {
 
     /// What a drive without play or softness leaves of the balance at row `at`.
     #[must_use]
-    pub fn rest(&self, at: usize) -> f64 {
+    pub fn balance_residual(&self, at: usize) -> f64 {
         self.effort[at] - self.inertia * self.acceleration[at] - self.viscous * self.velocity[at] - self.force[at]
     }
 }

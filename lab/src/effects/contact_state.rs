@@ -2,12 +2,12 @@
 
 /// One instant of the contact. Depth is positive into the environment, force positive when the tool pushes.
 ///
-/// A recorded motion has passed a smoothing filter, a Gaussian of width `blur` seconds. A contact begins at a corner, and
+/// A recorded motion has passed a smoothing filter, a Gaussian of width `filter_width` seconds. A contact begins at a corner, and
 /// max(0, x) of a smoothed x is not the smoothed max(0, x). For a motion that is straight across the blur the difference
 /// is known in closed form, and depth and rate here contain it: depth is E max(0, x + v tau), tau normal with deviation
-/// `blur`. In a simulation the blur is zero and they are what they always were.
+/// `filter_width`. In a simulation the blur is zero and they are what they always were.
 #[derive(Debug, Clone, Copy)]
-pub struct Touch {
+pub struct ContactState {
     /// Seconds since the trial began.
     pub time: f64,
     /// Seconds since the last instant, zero at the first.
@@ -19,7 +19,7 @@ pub struct Touch {
     /// Acceleration of the tool.
     pub acceleration: f64,
     /// Width of the smoothing filter, s.
-    pub blur: f64,
+    pub filter_width: f64,
     /// Force both ways.
     pub bilateral: bool,
     /// Depth of penetration.
@@ -40,14 +40,14 @@ pub struct Touch {
     pub force: f64,
 }
 
-impl Touch {
+impl ContactState {
     /// Depth, rate and contact share from `position` and `velocity`.
     pub fn enter(&mut self) {
         if self.bilateral {
             (self.depth, self.rate, self.inside) = (self.position, self.velocity, 1.0);
             return;
         }
-        let width = self.velocity.abs() * self.blur;
+        let width = self.velocity.abs() * self.filter_width;
         self.inside = gate(self.position, width);
         self.depth = ramp(self.position, width);
         self.rate = self.velocity * self.inside;
@@ -66,7 +66,7 @@ impl Touch {
             borne
         } else if self.velocity < 0.0 && self.step > 0.0 && self.inside > 0.0 {
             // The slope of a release is no steeper than the spring's and what the damper adds while the tool leaves.
-            ramp(borne, ((borne - before) / self.step).abs() * self.blur)
+            ramp(borne, ((borne - before) / self.step).abs() * self.filter_width)
         } else {
             borne.max(0.0)
         };

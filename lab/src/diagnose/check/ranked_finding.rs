@@ -5,7 +5,7 @@ use crate::recording::Recording;
 
 /// What one check says of one trial.
 #[derive(Debug)]
-pub struct Note {
+pub struct RankedFinding {
     /// Kind and channel: of each there is one finding.
     pub kind: &'static str,
     /// Whether it casts doubt on the answer.
@@ -18,7 +18,7 @@ pub struct Note {
     pub text: String,
 }
 
-impl Note {
+impl RankedFinding {
     /// A note that does not cast doubt on the answer.
     pub fn mild(kind: &'static str, place: impl Into<String>, weight: f64, text: impl Into<String>) -> Self {
         Self { kind, grave: false, place: place.into(), weight, text: text.into() }
@@ -31,8 +31,8 @@ impl Note {
 }
 
 /// One finding a kind, the grave ones first, else in the order of the checks.
-pub fn gather(notes: Vec<Note>, recordings: &[Recording]) -> Vec<Finding> {
-    let mut kinds: Vec<Vec<Note>> = Vec::new();
+pub fn merge_findings(notes: Vec<RankedFinding>, recordings: &[Recording]) -> Vec<Finding> {
+    let mut kinds: Vec<Vec<RankedFinding>> = Vec::new();
     for note in notes {
         match kinds.iter_mut().find(|kind| kind[0].kind == note.kind) {
             Some(kind) => kind.push(note),
@@ -45,7 +45,7 @@ pub fn gather(notes: Vec<Note>, recordings: &[Recording]) -> Vec<Finding> {
 }
 
 /// The worst of a kind, and how many others there are.
-fn merge(kind: Vec<Note>, trials: usize) -> Option<Finding> {
+fn merge(kind: Vec<RankedFinding>, trials: usize) -> Option<Finding> {
     let others = kind.len() - 1;
     let worst = kind
         .into_iter()

@@ -1,11 +1,11 @@
 //! The contact law along a motion: spring, damper and the contact effects in the order of their stages.
 
-use super::{Effect, Memory, Place, Stage, Touch};
+use super::{ContactState, Effect, EffectState, Place, Stage};
 use crate::rig::Contact;
 
 /// An effect at work: which one, by which of its laws, with which values.
 #[derive(Clone, Copy)]
-pub struct Active<'a> {
+pub struct ActiveEffect<'a> {
     /// Which one.
     pub effect: &'static dyn Effect,
     /// Index of its form.
@@ -14,21 +14,21 @@ pub struct Active<'a> {
     pub values: &'a [f64],
 }
 
-impl Active<'_> {
+impl ActiveEffect<'_> {
     /// When it acts among others of its place.
     #[must_use]
     pub fn stage(&self) -> Stage {
-        self.effect.card().stage
+        self.effect.spec().stage
     }
 }
 
 /// An effect and what it carries from one instant to the next.
 #[derive(Clone, Copy)]
 struct Term<'a> {
-    active: Active<'a>,
+    active: ActiveEffect<'a>,
     stage: Stage,
-    memory: Memory,
-    kept: Memory,
+    memory: EffectState,
+    kept: EffectState,
 }
 
 /// A contact that is walked through instant by instant.
@@ -36,7 +36,7 @@ struct Term<'a> {
 /// F = max(0, K x + B v + effects), x = position - surface, in N (or N m), positive when the tool pushes; forces of both
 /// signs where the contact is bilateral or an effect pulls. Without effects it is [`Contact::force`].
 #[derive(Clone)]
-pub struct Along<'a> {
+pub struct ContactSimulator<'a> {
     contact: Contact,
     /// Sorted by stage.
     terms: Vec<Term<'a>>,
@@ -45,20 +45,20 @@ pub struct Along<'a> {
     kept: f64,
 }
 
-impl<'a> Along<'a> {
+impl<'a> ContactSimulator<'a> {
     /// The law of `contact` with those of `actives` that act in the contact, at the start of a trial.
     ///
     /// Effects of one stage act in the order in which they are given.
     #[must_use]
-    pub fn new(contact: Contact, actives: &[Active<'a>]) -> Self {
+    pub fn new(contact: Contact, actives: &[ActiveEffect<'a>]) -> Self {
         let mut terms: Vec<_> = actives
             .iter()
-            .filter(|active| active.effect.card().place == Place::Contact)
+            .filter(|active| active.effect.spec().place == Place::Contact)
             .map(|active| Term {
                 active: *active,
                 stage: active.stage(),
-                memory: Memory::default(),
-                kept: Memory::default(),
+                memory: EffectState::default(),
+                kept: EffectState::default(),
             })
             .collect();
         terms.sort_by_key(|term| term.stage);
@@ -67,17 +67,17 @@ impl<'a> Along<'a> {
 
     /// Back to the start of a trial.
     pub fn restart(&mut self) {
-        self.terms.iter_mut().for_each(|term| term.memory = Memory::default());
+        self.terms.iter_mut().for_each(|term| term.memory = EffectState::default());
         self.borne = 0.0;
     }
 
-    /// Marks this instant, for [`Along::rewind`].
+    /// Marks this instant, for [`ContactSimulator::rewind`].
     pub fn keep(&mut self) {
         self.terms.iter_mut().for_each(|term| term.kept = term.memory);
         self.kept = self.borne;
     }
 
-    /// Takes back every step since the last [`Along::keep`].
+    /// Takes back every step since the last [`ContactSimulator::keep`].
     pub fn rewind(&mut self) {
         self.terms.iter_mut().for_each(|term| term.memory = term.kept);
         self.borne = self.kept;
@@ -86,16 +86,24 @@ impl<'a> Along<'a> {
     /// The force on the tool at the next instant.
     ///
     /// `time` is in seconds since the trial began, `step` since the last instant (zero at the first); `position` is the
-    /// tool's as the sensor counts it, `blur` the width in seconds of the smoothing filter that the motion has passed.
-    pub fn step(&mut self, time: f64, step: f64, position: f64, velocity: f64, acceleration: f64, blur: f64) -> f64 {
+    /// tool's as the sensor counts it, `filter_width` the width in seconds of the smoothing filter that the motion has passed.
+    pub fn step(
+        &mut self,
+        time: f64,
+        step: f64,
+        position: f64,
+        velocity: f64,
+        acceleration: f64,
+        filter_width: f64,
+    ) -> f64 {
         let contact = &self.contact;
-        let mut touch = Touch {
+        let mut touch = ContactState {
             time,
             step,
             position: position - contact.surface,
             velocity,
             acceleration,
-            blur,
+            filter_width,
             bilateral: contact.bilateral,
             depth: 0.0,
             rate: 0.0,
@@ -107,9 +115,9 @@ impl<'a> Along<'a> {
             force: 0.0,
         };
         let mut terms = self.terms.iter_mut().peekable();
-        let mut act = |last: Stage, touch: &mut Touch| {
+        let mut act = |last: Stage, touch: &mut ContactState| {
             while let Some(term) = terms.next_if(|term| term.stage <= last) {
-                term.active.effect.touch(term.active.form, term.active.values, &mut term.memory, touch);
+                term.active.effect.act_on_contact(term.active.form, term.active.values, &mut term.memory, touch);
             }
         };
         act(Stage::Geometry, &mut touch);

@@ -1,8 +1,8 @@
 //! What the motion leaves undecided: speeds, depths, ways back and holds that were never run.
 
-use super::note::Note;
-use super::view::{View, bounds, quantile};
-use super::words::quantity;
+use super::checked_trial::{CheckedTrial, bounds, quantile};
+use super::ranked_finding::RankedFinding;
+use super::wording::quantity;
 use crate::rig::Rig;
 
 /// Ratio of speeds below which they are one speed.
@@ -44,7 +44,7 @@ struct Motion {
 }
 
 /// What is lacking over all trials together: they are fitted together.
-pub fn lacking(rig: &Rig, views: &[View<'_>]) -> Vec<Note> {
+pub fn lacking(rig: &Rig, views: &[CheckedTrial<'_>]) -> Vec<RankedFinding> {
     let Some(first) = views.first() else { return Vec::new() };
     let in_contact = rig.contact.is_some() && views.iter().any(|view| view.force.is_some());
     let motion = Motion::of(rig, views, in_contact);
@@ -69,7 +69,7 @@ pub fn lacking(rig: &Rig, views: &[View<'_>]) -> Vec<Note> {
 }
 
 impl Motion {
-    fn of(rig: &Rig, views: &[View<'_>], in_contact: bool) -> Self {
+    fn of(rig: &Rig, views: &[CheckedTrial<'_>], in_contact: bool) -> Self {
         let (mut stretches, mut speeds) = (Vec::new(), Vec::new());
         for view in views {
             let inside = if in_contact { view.touching(rig) } else { vec![true; view.depth.len()] };
@@ -93,7 +93,7 @@ impl Motion {
         Some((high - low, high.abs().max(low.abs())))
     }
 
-    fn one_depth(&self, length: &str) -> Option<Note> {
+    fn one_depth(&self, length: &str) -> Option<RankedFinding> {
         let (spread, deep) = self.spread()?;
         let text = format!(
             "Nine in ten rows of contact lie within {} at a depth of {}: whether stiffness or damping change with depth cannot be told. Press to several \
@@ -103,11 +103,11 @@ impl Motion {
         );
         let on_way = self.depths().iter().filter(|depth| WAY.contains(&(depth.abs() / deep))).count() as f64;
         (spread < ONE_DEPTH * deep && on_way * self.stride < SHOWN)
-            .then(|| Note::mild("one depth", "motion", 0.0, text))
+            .then(|| RankedFinding::mild("one depth", "motion", 0.0, text))
     }
 
     /// Whether the mean depth never stays: looked for in pieces, so that a small oscillation does not hide a hold.
-    fn no_hold(&self) -> Option<Note> {
+    fn no_hold(&self) -> Option<RankedFinding> {
         let (spread, _) = self.spread()?;
         let longest = self.stretches.iter().map(Vec::len).max()?;
         let held = |stretch: &&Vec<f64>| {
@@ -126,11 +126,11 @@ impl Motion {
         let text = "The tool never stays at a depth: whether the force relaxes under a held contact cannot be told from damping and hysteresis. Add a hold of \
                     some seconds, as long as the slowest change that matters.";
         (longest > PIECES && !self.stretches.iter().any(|stretch| held(&stretch)))
-            .then(|| Note::mild("no hold", "motion", 0.0, text))
+            .then(|| RankedFinding::mild("no hold", "motion", 0.0, text))
     }
 }
 
-fn one_speed(length: &str, inward: &[f64], outward: &[f64], in_contact: bool) -> Option<Note> {
+fn one_speed(length: &str, inward: &[f64], outward: &[f64], in_contact: bool) -> Option<RankedFinding> {
     let speed = |values: &[f64]| {
         let [low, mid, high] = [0.1, 0.5, 0.9].map(|at| quantile(values.to_vec(), at));
         Some((high? / low?, mid?))
@@ -148,10 +148,10 @@ fn one_speed(length: &str, inward: &[f64], outward: &[f64], in_contact: bool) ->
         "The tool moves at one speed each way ({}): {what}. Run the same way at two more speeds, a factor of three apart.",
         speeds.join(" and "),
     );
-    Some(Note::mild("one speed", "motion", 0.0, text))
+    Some(RankedFinding::mild("one speed", "motion", 0.0, text))
 }
 
-fn one_way(inward: &[f64], outward: &[f64]) -> Option<Note> {
+fn one_way(inward: &[f64], outward: &[f64]) -> Option<RankedFinding> {
     let all = (inward.len() + outward.len()) as f64;
     let lacks = |way: &[f64]| (way.len() as f64) < BACK * all;
     let text = match (lacks(outward), lacks(inward)) {
@@ -163,5 +163,5 @@ fn one_way(inward: &[f64], outward: &[f64]) -> Option<Note> {
         }
         _ => return None,
     };
-    (all > ROWS as f64 / 2.0).then(|| Note::mild("one way", "motion", 0.0, text))
+    (all > ROWS as f64 / 2.0).then(|| RankedFinding::mild("one way", "motion", 0.0, text))
 }

@@ -1,36 +1,36 @@
 //! What an experiment is and what it would show, in plain words.
 
-use super::bench::Bench;
-use super::pair::{is_equivalent, separated_by};
-use super::rest::Rest;
-use super::{DECIDES, Trying, Worth};
-use crate::diagnose::bootstrap::problem::Study;
+use super::discrepancy::Discrepancy;
+use super::separating_experiment::{is_equivalent, separated_by};
+use super::synthetic_rig::SyntheticRig;
+use super::{DECISIVE_CHI2, InformationRate, TriedMotion};
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::model::{Model, Term};
 use crate::page::quantity::{rounded, seconds};
 
 /// Rates below this one are not set against that of the recordings: a ratio of two nothings.
-const NOTHING: f64 = 1e-3;
+const MIN_RATE: f64 = 1e-3;
 
 /// Share of the noise below which a residual is not quoted.
-const UNSEEN: f64 = 0.05;
+const MIN_RMS_OVER_NOISE: f64 = 0.05;
 
 /// Share of the greatest force, or effort, below which a noise is that of ideal sensors.
-const PERFECT: f64 = 1e-7;
+const IDEAL_SENSOR_RATIO: f64 = 1e-7;
 
 /// The text of an experiment.
 pub(super) fn text(
-    study: &Study,
-    bench: &Bench<'_>,
-    best: &Trying,
+    problem: &IdentificationProblem,
+    bench: &SyntheticRig<'_>,
+    best: &TriedMotion,
     wider: &[bool],
-    worth: Worth,
+    worth: InformationRate,
     answer: &Model,
     rivals: &[(&Model, &[f64])],
 ) -> String {
-    let unit = if study.is_rotary { "N m" } else { "N" };
+    let unit = if problem.is_rotary { "N m" } else { "N" };
     let length = seconds(best.motion.course.seconds());
     let terms = rivals.iter().map(|(rival, _)| differ(answer, rival));
-    let mut text = if best.least(wider) < DECIDES {
+    let mut text = if best.least(wider) < DECISIVE_CHI2 {
         format!(
             "No motion within what the recordings did tells them apart for certain. The best found: {}, {length} in all.",
             best.motion.what
@@ -45,7 +45,7 @@ pub(super) fn text(
         text.push(' ');
         text.push_str(&sentence(bench, pair, left, reverse, unit));
     }
-    if best.least(wider) >= DECIDES && worth.recorded > NOTHING && worth.designed > 1.5 * worth.recorded {
+    if best.least(wider) >= DECISIVE_CHI2 && worth.recorded > MIN_RATE && worth.designed > 1.5 * worth.recorded {
         let times = rounded(worth.designed / worth.recorded, "1", 2);
         text.push_str(&format!(" A second of it tells {times} times as much as one of the recordings."));
     }
@@ -53,39 +53,45 @@ pub(super) fn text(
 }
 
 /// What would be seen of one pair, under either truth.
-fn sentence(bench: &Bench<'_>, pair: (Option<Term>, Option<Term>), left: &Rest, reverse: &Rest, unit: &str) -> String {
+fn sentence(
+    bench: &SyntheticRig<'_>,
+    pair: (Option<Term>, Option<Term>),
+    left: &Discrepancy,
+    reverse: &Discrepancy,
+    unit: &str,
+) -> String {
     let name = |term: Option<Term>| term.map_or("the answer", |term| term.name());
     let (answer, rival) = (name(pair.0), name(pair.1));
     // The channel in which either fails by more of its floor.
     let over = |effort: bool| {
         let worse = if effort { left.effort.max(reverse.effort) } else { left.force.max(reverse.force) };
-        bench.floor(effort).map_or(0.0, |floor| worse / floor)
+        bench.noise_model(effort).map_or(0.0, |noise_model| worse / noise_model)
     };
     let effort = over(true) > over(false);
     let channel = if effort { "drive's balance" } else { "force" };
-    let floor = bench.floor(effort).unwrap_or(0.0);
-    let size = |rest: &Rest| match if effort { rest.effort } else { rest.force } {
-        rest if rest < UNSEEN * floor => "too little to see".into(),
+    let noise_model = bench.noise_model(effort).unwrap_or(0.0);
+    let size = |rest: &Discrepancy| match if effort { rest.effort } else { rest.force } {
+        rest if rest < MIN_RMS_OVER_NOISE * noise_model => "too little to see".into(),
         rest => format!("{} rms", rounded(rest, unit, 2)),
     };
-    let noise = match floor {
-        floor if floor < PERFECT * bench.greatest(effort) => "next to none".into(),
-        floor => rounded(floor, unit, 2),
+    let noise = match noise_model {
+        noise_model if noise_model < IDEAL_SENSOR_RATIO * bench.greatest(effort) => "next to none".into(),
+        noise_model => rounded(noise_model, unit, 2),
     };
-    let seen = format!(
+    let observed = format!(
         "If it is {answer}, a refitted {rival} misses the {channel} by {}; if it is {rival}, a refitted {answer} misses it \
          by {} (the noise is {noise}).",
         size(left),
         size(reverse)
     );
-    if left.energy.max(reverse.energy) >= DECIDES {
-        return seen;
+    if left.energy.max(reverse.energy) >= DECISIVE_CHI2 {
+        return observed;
     }
     match pair {
         (Some(answer), Some(rival)) if is_equivalent(&answer, &rival) => {
-            format!("{seen} {}", separated_by(&answer, &rival))
+            format!("{observed} {}", separated_by(&answer, &rival))
         }
-        _ => format!("{seen} That is too little: {}.", bench.wanted()),
+        _ => format!("{observed} That is too little: {}.", bench.wanted()),
     }
 }
 

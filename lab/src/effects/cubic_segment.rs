@@ -5,14 +5,14 @@
 /// Five rows a period, as many as the analysis has at the end of its band, a straight piece loses an eighth of a wave's
 /// height between its samples; a cubic with the rates at both loses a hundredth.
 #[derive(Debug, Clone, Copy)]
-pub struct Course {
+pub struct CubicSegment {
     parts: [f64; 4],
 }
 
 /// Steps a time constant below which the response is summed as a series: the recursion loses a digit for each power of it.
-const SLOW: f64 = 0.5;
+const SERIES_RATIO: f64 = 0.5;
 
-impl Course {
+impl CubicSegment {
     /// A straight line.
     #[must_use]
     pub fn straight(first: f64, last: f64) -> Self {
@@ -42,7 +42,7 @@ impl Course {
         for (power, part) in self.parts.iter().enumerate() {
             let power = power as f64;
             // The integral of r exp(-r (1 - s)) s^n over the course.
-            let response = if ratio < SLOW {
+            let response = if ratio < SERIES_RATIO {
                 series(power, ratio)
             } else if power == 0.0 {
                 -(-ratio).exp_m1()
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     /// The lag by many small straight pieces.
-    fn crept(course: &Course, mut state: f64, ratio: f64) -> f64 {
+    fn crept(course: &CubicSegment, mut state: f64, ratio: f64) -> f64 {
         let steps = 20_000;
         let span = ratio / f64::from(steps);
         for step in 0..steps {
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_lag_along_a_cubic_is_what_small_steps_come_to() {
-        let course = Course::smooth([0.3, 40.0], [-0.2, 70.0], 0.02);
+        let course = CubicSegment::smooth([0.3, 40.0], [-0.2, 70.0], 0.02);
         for ratio in [1e-6, 0.03, 0.49, 0.51, 3.0, 40.0] {
             let (exact, crept) = (course.lagged(1.7, ratio), crept(&course, 1.7, ratio));
             // The pieces leave the square of one of them, of a course of size one.
@@ -101,8 +101,8 @@ mod tests {
         let (mut worst, mut chord) = (0.0f64, 0.0f64);
         for row in 0..5 {
             let (a, b) = (f64::from(row), f64::from(row + 1));
-            let smooth = Course::smooth([at(a), rate(a)], [at(b), rate(b)], step);
-            let straight = Course::straight(at(a), at(b));
+            let smooth = CubicSegment::smooth([at(a), rate(a)], [at(b), rate(b)], step);
+            let straight = CubicSegment::straight(at(a), at(b));
             for part in 1..10 {
                 let (part, row) = (f64::from(part) / 10.0, a + f64::from(part) / 10.0);
                 worst = worst.max((smooth.at(part) - at(row)).abs());

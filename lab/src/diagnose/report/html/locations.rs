@@ -1,17 +1,17 @@
 //! Where simulation and recordings differ.
 
-use super::super::diagnosis::{Answer, Location, Map, Pictures};
-use super::words::{channel, heading, location, share};
-use super::{map, names_physics};
+use super::super::diagnosis::{BinnedResidual, Diagnosis, Location, PlotData};
+use super::wording::{channel, heading, location, share};
+use super::{binned_residual, names_physics};
 use maud::{Markup, html};
 
 /// More places than these are folded away.
-const SHOWN: usize = 6;
+const MAX_LOCATIONS: usize = 6;
 /// In the order in which a reader asks.
 const CHANNELS: [&str; 2] = ["force", "effort"];
 
 /// Pictures and words; a sentence where there is nothing to locate.
-pub(super) fn section(answer: &Answer, pictures: &Pictures) -> Markup {
+pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
     let improved = names_physics(answer);
     html! {
         section #where aria-labelledby="where-title" {
@@ -19,25 +19,25 @@ pub(super) fn section(answer: &Answer, pictures: &Pictures) -> Markup {
             (locations(answer))
             @if pictures.maps.iter().any(|map| !map.labels.is_empty()) { (explanation(improved)) }
             @for name in CHANNELS {
-                @let maps: Vec<&Map> = pictures.maps.iter().filter(|map| map.channel == name && !map.labels.is_empty()).collect();
+                @let maps: Vec<&BinnedResidual> = pictures.maps.iter().filter(|map| map.channel == name && !map.labels.is_empty()).collect();
                 @if !maps.is_empty() {
                     h3.channel { (heading(channel(name))) }
-                    div.maps { @for map in maps { (map::figure(map, improved)) } }
+                    div.maps { @for map in maps { (binned_residual::figure(map, improved)) } }
                 }
             }
         }
     }
 }
 
-fn locations(answer: &Answer) -> Markup {
+fn locations(answer: &Diagnosis) -> Markup {
     if answer.locations.is_empty() {
         return html! { p { "No stretch of the recordings stands out from the noise: there is no place at which the simulation is off." } };
     }
-    let (first, rest) = answer.locations.split_at(answer.locations.len().min(SHOWN));
+    let (first, rest) = answer.locations.split_at(answer.locations.len().min(MAX_LOCATIONS));
     html! {
         ol.places { @for place in first { (sentence(place)) } }
         @if !rest.is_empty() {
-            details { summary { (rest.len()) " more places" } ol.places start=(SHOWN + 1) { @for place in rest { (sentence(place)) } } }
+            details { summary { (rest.len()) " more places" } ol.places start=(MAX_LOCATIONS + 1) { @for place in rest { (sentence(place)) } } }
         }
     }
 }

@@ -4,22 +4,22 @@ use crate::diagnose::model::Term;
 use crate::effects::Place;
 
 /// Two effects and the motion, or the sensor, that separates them.
-struct Pair {
+struct SeparatingExperiment {
     names: [&'static str; 2],
     by: &'static str,
     /// Whether force and position are the same under both, whatever the motion.
     same: bool,
 }
 
-const fn pair(one: &'static str, other: &'static str, by: &'static str) -> Pair {
-    Pair { names: [one, other], by, same: false }
+const fn pair(one: &'static str, other: &'static str, by: &'static str) -> SeparatingExperiment {
+    SeparatingExperiment { names: [one, other], by, same: false }
 }
 
-const fn same(one: &'static str, other: &'static str, by: &'static str) -> Pair {
-    Pair { names: [one, other], by, same: true }
+const fn same(one: &'static str, other: &'static str, by: &'static str) -> SeparatingExperiment {
+    SeparatingExperiment { names: [one, other], by, same: true }
 }
 
-static PAIRS: [Pair; 28] = [
+static SEPARATING_EXPERIMENTS: [SeparatingExperiment; 28] = [
     same(
         "transmission_compliance",
         "stress_relaxation",
@@ -160,9 +160,11 @@ static PAIRS: [Pair; 28] = [
     ),
 ];
 
-fn known(answer: &Term, rival: &Term) -> Option<&'static Pair> {
+fn known(answer: &Term, rival: &Term) -> Option<&'static SeparatingExperiment> {
     let names = [answer.name(), rival.name()];
-    PAIRS.iter().find(|pair| pair.names.iter().all(|name| names.contains(name)) && names[0] != names[1])
+    SEPARATING_EXPERIMENTS
+        .iter()
+        .find(|pair| pair.names.iter().all(|name| names.contains(name)) && names[0] != names[1])
 }
 
 /// Whether force and position are the same under both, whatever the motion.
@@ -181,7 +183,7 @@ pub fn separated_by(answer: &Term, rival: &Term) -> String {
     if let Some(by) = gain(answer, rival).or_else(|| bias(answer, rival)) {
         return by.into();
     }
-    let (one, other) = (answer.effect.card(), rival.effect.card());
+    let (one, other) = (answer.effect.spec(), rival.effect.spec());
     if one.name == other.name {
         return format!("Two laws of one effect: {} tells them apart over a wider range.", one.excited_by);
     }
@@ -196,7 +198,7 @@ pub fn separated_by(answer: &Term, rival: &Term) -> String {
 
 /// A gain beside an effect of the contact.
 fn gain(answer: &Term, rival: &Term) -> Option<&'static str> {
-    let contact = |term: &Term| term.effect.card().place == Place::Contact;
+    let contact = |term: &Term| term.effect.spec().place == Place::Contact;
     let one = |term: &Term, other: &Term| term.name() == "force_gain" && contact(other);
     (one(answer, rival) || one(rival, answer)).then_some(
         "A force gain is a scale of stiffness and damping, which no motion shows from force and position alone: record the \

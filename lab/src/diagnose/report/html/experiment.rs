@@ -1,6 +1,6 @@
 //! The motion to run next.
 
-use super::super::diagnosis::{Experiment, Pictures};
+use super::super::diagnosis::{Experiment, PlotData};
 use crate::page::quantity::{rounded, seconds};
 use crate::page::thin;
 use maud::{Markup, html};
@@ -13,7 +13,7 @@ const GRID: (f64, f64) = (1000.0, 100.0);
 const HEIGHT: usize = 180;
 
 /// The reference with its text.
-pub(super) fn figure(next: &Experiment, pictures: &Pictures) -> Markup {
+pub(super) fn figure(next: &Experiment, pictures: &PlotData) -> Markup {
     let finite = |values: &[f64]| {
         let numbers = values.iter().filter(|value| value.is_finite());
         numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))

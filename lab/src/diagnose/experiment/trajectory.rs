@@ -1,23 +1,23 @@
 //! A motion in closed form, piece by piece: position, velocity and acceleration without a filter between.
 
-use super::room::Room;
+use super::motion_limits::MotionLimits;
 
 /// Rate of a smooth move of one length in one second at its quickest, and its greatest acceleration.
-const MOVE: (f64, f64) = (1.875, 5.773_502_691_896_258);
+const QUINTIC_PEAKS: (f64, f64) = (1.875, 5.773_502_691_896_258);
 
 /// Instants a turn at which a wave is held against the limits.
-const LOOKS: usize = 64;
+const SAMPLES_PER_CYCLE: usize = 64;
 
 /// Share of the longest recording that a move may take, be it ever so slow.
-const LONGEST: f64 = 0.1;
+const MAX_MOVE_FRACTION: f64 = 0.1;
 
 /// Turns over which a wave grows, and over which it fades.
-const FADE: f64 = 1.0;
+const FADE_CYCLES: f64 = 1.0;
 
 /// A stretch of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Piece {
-    Rest {
+enum Segment {
+    Dwell {
         at: f64,
     },
     /// The quintic that leaves and arrives at rest, without a jump of the acceleration.
@@ -36,23 +36,23 @@ enum Piece {
 /// A motion that begins and ends at rest where the recordings began. It keeps within the speed and the acceleration of its
 /// room, whatever is asked of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
-    room: Room,
-    pieces: Vec<(f64, Piece)>,
+pub struct Trajectory {
+    room: MotionLimits,
+    pieces: Vec<(f64, Segment)>,
     place: f64,
 }
 
-impl Course {
+impl Trajectory {
     /// At rest where the recordings began.
     #[must_use]
-    pub fn new(room: Room) -> Self {
+    pub fn new(room: MotionLimits) -> Self {
         Self { room, pieces: Vec::new(), place: room.start }
     }
 
     /// Stays for `seconds`.
     #[must_use]
     pub fn rest(mut self, seconds: f64) -> Self {
-        self.pieces.push((seconds, Piece::Rest { at: self.place }));
+        self.pieces.push((seconds, Segment::Dwell { at: self.place }));
         self
     }
 
@@ -61,12 +61,12 @@ impl Course {
     pub fn to(mut self, place: f64, part: f64) -> Self {
         let place = place.clamp(self.room.low, self.room.high);
         let by = place - self.place;
-        let by_speed = MOVE.0 * by.abs() / self.room.speed;
-        let by_acceleration = (MOVE.1 * by.abs() / self.room.acceleration).sqrt();
+        let by_speed = QUINTIC_PEAKS.0 * by.abs() / self.room.speed;
+        let by_acceleration = (QUINTIC_PEAKS.1 * by.abs() / self.room.acceleration).sqrt();
         let least = by_speed.max(by_acceleration);
-        let seconds = (least / part).min(LONGEST * self.room.seconds).max(least);
+        let seconds = (least / part).min(MAX_MOVE_FRACTION * self.room.seconds).max(least);
         if seconds > 0.0 {
-            self.pieces.push((seconds, Piece::Move { from: self.place, by }));
+            self.pieces.push((seconds, Segment::Move { from: self.place, by }));
             self.place = place;
         }
         self
@@ -77,9 +77,9 @@ impl Course {
     pub fn wave(mut self, amplitude: f64, frequency: f64, turns: f64) -> Self {
         let about = self.place;
         let amplitude = amplitude.min(self.room.high - about).min(about - self.room.low).max(0.0);
-        let seconds = turns.max(2.0 * FADE + 1.0) / frequency;
-        let unit = Piece::Wave { about: 0.0, amplitude: 1.0, frequency };
-        let looks = (seconds * frequency * LOOKS as f64).ceil();
+        let seconds = turns.max(2.0 * FADE_CYCLES + 1.0) / frequency;
+        let unit = Segment::Wave { about: 0.0, amplitude: 1.0, frequency };
+        let looks = (seconds * frequency * SAMPLES_PER_CYCLE as f64).ceil();
         let (mut speed, mut acceleration) = (f64::MIN_POSITIVE, f64::MIN_POSITIVE);
         for look in 0..looks as usize {
             let [_, v, a] = unit.at(look as f64 / looks * seconds, seconds);
@@ -87,7 +87,7 @@ impl Course {
         }
         // Between two looks it may be a little quicker than at either.
         let amplitude = amplitude.min(0.99 * self.room.speed / speed).min(0.99 * self.room.acceleration / acceleration);
-        self.pieces.push((seconds, Piece::Wave { about, amplitude, frequency }));
+        self.pieces.push((seconds, Segment::Wave { about, amplitude, frequency }));
         self
     }
 
@@ -137,17 +137,17 @@ impl Course {
     }
 }
 
-impl Piece {
+impl Segment {
     /// Position, velocity and acceleration `since` its beginning; it takes `seconds`.
     fn at(&self, since: f64, seconds: f64) -> [f64; 3] {
         match *self {
-            Self::Rest { at } => [at, 0.0, 0.0],
+            Self::Dwell { at } => [at, 0.0, 0.0],
             Self::Move { from, by } => {
                 let [s, v, a] = smooth(since / seconds);
                 [from + by * s, by * v / seconds, by * a / (seconds * seconds)]
             }
             Self::Wave { about, amplitude, frequency } => {
-                let fade = FADE / frequency;
+                let fade = FADE_CYCLES / frequency;
                 let turn = std::f64::consts::TAU * frequency;
                 let (sine, cosine) = (turn * since).sin_cos();
                 let rising = since < seconds - since;

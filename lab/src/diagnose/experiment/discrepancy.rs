@@ -1,15 +1,15 @@
 //! What a wrong model leaves of what the right one shows.
 
-use super::bench::Bench;
-use super::claim::Claim;
-use crate::diagnose::estimation::levenberg_marquardt::{self, Data};
-use crate::diagnose::estimation::whitener::{Floor, Whitener};
+use super::hypothesis::Hypothesis;
+use super::synthetic_rig::SyntheticRig;
+use crate::diagnose::estimation::levenberg_marquardt::{self, FitData};
+use crate::diagnose::estimation::whitener::{NoiseModel, Whitener};
 use crate::diagnose::model::Channels;
-use crate::diagnose::signals::filtered_trial::{Track, Trial};
+use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
 
 /// What a wrong model leaves of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
+pub struct Discrepancy {
     /// Sum of squares over the floors of both channels, beyond what the right model leaves.
     pub energy: f64,
     /// Root mean square in the force reading, N or N m; zero where there is none.
@@ -18,23 +18,23 @@ pub struct Rest {
     pub effort: f64,
 }
 
-impl Bench<'_> {
+impl SyntheticRig<'_> {
     /// What `rival`, all of its values refitted, leaves of `trials`.
     #[must_use]
-    pub fn left(&self, rival: &Claim, trials: &[Trial]) -> Rest {
+    pub fn left(&self, rival: &Hypothesis, trials: &[AnalysisTrial]) -> Discrepancy {
         let whitener = self.even(trials);
-        let data = Data { trials, whitener: &whitener, rows: None };
+        let data = FitData { trials, whitener: &whitener, rows: None };
         // From its own values and from the answer's: what looks told apart may be a search that got lost.
         let starts = [rival.values.clone(), rival.about(self.answer())];
-        let fits = starts.iter().map(|start| levenberg_marquardt::fit(&data, &rival.model, start, &rival.scene));
+        let fits = starts.iter().map(|start| levenberg_marquardt::fit(&data, &rival.model, start, &rival.excitation));
         let best = fits.min_by(|a, b| a.energy.total_cmp(&b.energy));
-        let Some(rival_fit) = best else { return Rest { energy: 0.0, force: 0.0, effort: 0.0 } };
+        let Some(rival_fit) = best else { return Discrepancy { energy: 0.0, force: 0.0, effort: 0.0 } };
         let rests: Vec<_> =
-            trials.iter().map(|trial| rival.model.rest(&rival_fit.values, trial, Channels::BOTH)).collect();
+            trials.iter().map(|trial| rival.model.residual(&rival_fit.values, trial, Channels::BOTH)).collect();
         let force = counted(&whitener.force, rests.iter().map(|rest| &rest.force));
         let effort = counted(&whitener.effort, rests.iter().map(|rest| &rest.effort));
         let own = data.energy(&self.answer().model, &self.answer().values);
-        Rest {
+        Discrepancy {
             energy: (rival_fit.energy - own).max(0.0),
             force: root_mean_square(&force),
             effort: root_mean_square(&effort),
@@ -42,19 +42,20 @@ impl Bench<'_> {
     }
 
     /// Even floors, raised so that a row counts for what it is worth.
-    fn even(&self, trials: &[Trial]) -> Whitener {
+    fn even(&self, trials: &[AnalysisTrial]) -> Whitener {
         let channel = |effort: bool| {
             let at = usize::from(effort);
-            let tracks: Vec<&Track> = trials.iter().map(|trial| trial.track(effort)).collect();
-            self.floors[at].map(|floor| Floor::even(&tracks, floor * self.memory[at].sqrt()))
+            let filtered_trials: Vec<&FilteredTrial> = trials.iter().map(|trial| trial.filtered(effort)).collect();
+            self.noise_models[at]
+                .map(|noise_model| NoiseModel::even(&filtered_trials, noise_model * self.memory[at].sqrt()))
         };
         Whitener { force: channel(false), effort: channel(true) }
     }
 }
 
 /// The rows that count of a channel, all trials together.
-fn counted<'a>(floor: &Option<Floor>, rests: impl Iterator<Item = &'a Vec<f64>>) -> Vec<f64> {
-    let rows = floor.iter().flat_map(|floor| &floor.rows);
+fn counted<'a>(noise_model: &Option<NoiseModel>, rests: impl Iterator<Item = &'a Vec<f64>>) -> Vec<f64> {
+    let rows = noise_model.iter().flat_map(|noise_model| &noise_model.rows);
     rows.zip(rests).flat_map(|(rows, rest)| rows.iter().filter_map(|&row| rest.get(row).copied())).collect()
 }
 

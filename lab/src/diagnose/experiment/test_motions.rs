@@ -1,18 +1,18 @@
 //! The motions among which an experiment is chosen.
 
-use super::course::Course;
-use super::room::Room;
+use super::motion_limits::MotionLimits;
+use super::trajectory::Trajectory;
 
 /// A motion and what it is.
 #[derive(Debug, Clone)]
-pub struct Motion {
+pub struct TestMotion {
     /// One plain clause that goes on after "a" or stands by itself: "holds at two depths".
     pub what: String,
     /// The way it goes.
-    pub course: Course,
+    pub course: Trajectory,
 }
 
-impl Motion {
+impl TestMotion {
     /// This one and then `other`.
     #[must_use]
     pub fn then(&self, other: &Self) -> Self {
@@ -27,14 +27,14 @@ impl Motion {
 }
 
 /// Share of the longest recording that a hold takes.
-const HOLD: f64 = 1.0 / 16.0;
+const HOLD_FRACTION: f64 = 1.0 / 16.0;
 
 /// Share of it in which sines of one frequency go on.
-const SWING: f64 = 1.0 / 10.0;
+const SINE_FRACTION: f64 = 1.0 / 10.0;
 
 /// Every motion that has a place in `room`.
 #[must_use]
-pub fn motions(room: Room) -> Vec<Motion> {
+pub fn motions(room: MotionLimits) -> Vec<TestMotion> {
     let mut motions = Vec::new();
     if room.surface.is_some() {
         motions.extend([holds(room), slow_holds(room), sines(room), sines_at_two_depths(room), small_reversals(room)]);
@@ -48,42 +48,42 @@ pub fn motions(room: Room) -> Vec<Motion> {
     motions
 }
 
-fn motion(what: impl Into<String>, course: Course) -> Motion {
-    Motion { what: what.into(), course }
+fn motion(what: impl Into<String>, course: Trajectory) -> TestMotion {
+    TestMotion { what: what.into(), course }
 }
 
-fn begin(room: Room) -> Course {
-    Course::new(room).rest(0.25 * HOLD * room.seconds)
+fn begin(room: MotionLimits) -> Trajectory {
+    Trajectory::new(room).rest(0.25 * HOLD_FRACTION * room.seconds)
 }
 
-fn end(course: Course, room: Room) -> Course {
-    course.home(0.5).rest(0.25 * HOLD * room.seconds)
+fn end(course: Trajectory, room: MotionLimits) -> Trajectory {
+    course.home(0.5).rest(0.25 * HOLD_FRACTION * room.seconds)
 }
 
-fn holds(room: Room) -> Motion {
-    let hold = HOLD * room.seconds;
+fn holds(room: MotionLimits) -> TestMotion {
+    let hold = HOLD_FRACTION * room.seconds;
     let course = begin(room).to(room.depth(0.95), 1.0).rest(2.0 * hold).to(room.depth(0.4), 1.0).rest(2.0 * hold);
     motion("quick approaches with long holds at two depths", end(course, room))
 }
 
-fn slow_holds(room: Room) -> Motion {
-    let hold = HOLD * room.seconds;
+fn slow_holds(room: MotionLimits) -> TestMotion {
+    let hold = HOLD_FRACTION * room.seconds;
     let course = begin(room).to(room.depth(0.4), 0.1).rest(hold).to(room.depth(0.95), 0.1).rest(hold);
     motion("a slow ramp with holds at two depths", end(course, room))
 }
 
-fn taps(room: Room) -> Motion {
-    let rest = 0.3 * HOLD * room.seconds;
-    let tap = |course: Course, part: f64| {
+fn taps(room: MotionLimits) -> TestMotion {
+    let rest = 0.3 * HOLD_FRACTION * room.seconds;
+    let tap = |course: Trajectory, part: f64| {
         course.to(room.away(0.5), 1.0).rest(rest).to(room.depth(0.9), part).to(room.away(0.5), part).rest(rest)
     };
     let course = [1.0, 0.3, 1.0, 0.3].into_iter().fold(begin(room), tap);
     motion("taps at two speeds", end(course, room))
 }
 
-fn two_depths(room: Room) -> Motion {
-    let rest = 0.3 * HOLD * room.seconds;
-    let tap = |course: Course, depth: f64| {
+fn two_depths(room: MotionLimits) -> TestMotion {
+    let rest = 0.3 * HOLD_FRACTION * room.seconds;
+    let tap = |course: Trajectory, depth: f64| {
         course.to(room.away(0.5), 1.0).rest(rest).to(room.depth(depth), 1.0).to(room.away(0.5), 1.0).rest(rest)
     };
     let course = [0.35, 0.95, 0.35, 0.95, 0.35].into_iter().fold(begin(room), tap);
@@ -91,11 +91,11 @@ fn two_depths(room: Room) -> Motion {
 }
 
 /// Swings about where `course` is for a while.
-fn swing(course: Course, room: Room, amplitude: f64, frequency: f64) -> Course {
-    course.wave(amplitude, frequency, (frequency * SWING * room.seconds).clamp(3.0, 200.0).round())
+fn swing(course: Trajectory, room: MotionLimits, amplitude: f64, frequency: f64) -> Trajectory {
+    course.wave(amplitude, frequency, (frequency * SINE_FRACTION * room.seconds).clamp(3.0, 200.0).round())
 }
 
-fn sines(room: Room) -> Motion {
+fn sines(room: MotionLimits) -> TestMotion {
     let amplitude = 0.2 * (room.high - room.depth(0.0));
     let quick = room.quickest(amplitude);
     // Above it the limits take the amplitude down.
@@ -108,7 +108,7 @@ fn sines(room: Room) -> Motion {
     motion(what, end(course, room))
 }
 
-fn sines_at_two_depths(room: Room) -> Motion {
+fn sines_at_two_depths(room: MotionLimits) -> TestMotion {
     let amplitude = 0.2 * (room.high - room.depth(0.0));
     let quick = room.quickest(amplitude);
     let course = [0.3, 0.75].iter().fold(begin(room), |course, depth| {
@@ -118,7 +118,7 @@ fn sines_at_two_depths(room: Room) -> Motion {
     motion(format!("sines of {} and {} at two depths", hz(0.3 * quick), hz(quick)), end(course, room))
 }
 
-fn small_reversals(room: Room) -> Motion {
+fn small_reversals(room: MotionLimits) -> TestMotion {
     let course = [0.3, 0.15, 0.05].iter().fold(begin(room).to(room.depth(0.6), 0.3), |course, size| {
         let (in_, out) = (room.depth(0.6 + size), room.depth(0.6 - size));
         course.to(in_, 0.2).to(out, 0.2).to(in_, 0.2).to(out, 0.2)
@@ -126,9 +126,9 @@ fn small_reversals(room: Room) -> Motion {
     motion("slow reversals in contact, large ones and small ones", end(course, room))
 }
 
-fn repeat(room: Room) -> Motion {
-    let hold = HOLD * room.seconds;
-    let contact = |course: Course| {
+fn repeat(room: MotionLimits) -> TestMotion {
+    let hold = HOLD_FRACTION * room.seconds;
+    let contact = |course: Trajectory| {
         let in_ = course.to(room.away(0.5), 1.0).to(room.depth(0.6), 0.6).rest(0.5 * hold);
         in_.to(room.away(0.5), 0.6).rest(0.5 * hold)
     };
@@ -139,7 +139,7 @@ fn repeat(room: Room) -> Motion {
     )
 }
 
-fn slow_reversals(room: Room) -> Motion {
+fn slow_reversals(room: MotionLimits) -> TestMotion {
     let course = [0.02f64, 0.1, 0.4, 1.0].iter().fold(begin(room), |course, part| {
         // The slower, the shorter the way: no leg takes the whole of the time.
         let way = 0.4 * part.sqrt();
@@ -149,15 +149,15 @@ fn slow_reversals(room: Room) -> Motion {
     motion("reversals in free space, from very slow to quick", end(course, room))
 }
 
-fn rest(room: Room) -> Motion {
-    let hold = HOLD * room.seconds;
+fn rest(room: MotionLimits) -> TestMotion {
+    let hold = HOLD_FRACTION * room.seconds;
     motion(
         "long rests in free space, at two places",
         end(begin(room).to(room.away(0.2), 0.5).rest(2.0 * hold).to(room.away(0.8), 0.5).rest(2.0 * hold), room),
     )
 }
 
-fn dashes(room: Room) -> Motion {
+fn dashes(room: MotionLimits) -> TestMotion {
     let amplitude = 0.2 * (room.away(1.0) - room.low);
     let quick = room.quickest(amplitude);
     let dash = begin(room).to(room.away(0.1), 1.0).to(room.away(0.9), 1.0).to(room.away(0.5), 1.0);
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn every_motion_is_smooth_keeps_within_its_room_and_comes_home() {
-        let room = Room {
+        let room = MotionLimits {
             start: -4e-3,
             low: -5e-3,
             high: 10e-3,
@@ -188,7 +188,7 @@ mod tests {
         };
         let mut all = motions(room);
         all.extend([all[0].then(&all[3]), all[5].clone().times(2)]);
-        for Motion { what, course } in all {
+        for TestMotion { what, course } in all {
             let step = 1e-4;
             let rows = course.rows(step);
             for row in &rows {

@@ -1,30 +1,30 @@
 //! A model and its values, as one side of an argument.
 
-use crate::diagnose::bootstrap::problem::Study;
+use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::model::{Model, index};
-use crate::effects::Scene;
+use crate::effects::ExcitationStats;
 
 /// A model with its values, as of the first trial alone.
 #[derive(Debug, Clone)]
-pub struct Claim {
+pub struct Hypothesis {
     /// Its structure.
     pub model: Model,
     /// Its values.
     pub values: Vec<f64>,
     /// The measures of the recordings under it.
-    pub scene: Scene,
+    pub excitation: ExcitationStats,
 }
 
-impl Claim {
+impl Hypothesis {
     /// `model` with `values` in a trial by itself.
     #[must_use]
-    pub fn of(study: &Study, model: &Model, values: &[f64]) -> Self {
-        let scene = study.scene(model, values);
+    pub fn of(problem: &IdentificationProblem, model: &Model, values: &[f64]) -> Self {
+        let excitation = problem.excitation_stats(model, values);
         let mut own = values[..index::SHARED].to_vec();
         for (at, term) in model.terms.iter().enumerate() {
-            own.extend(term.in_trial(&values[model.start_of(at)..], 0));
+            own.extend(term.in_trial(&values[model.first_value_of(at)..], 0));
         }
-        Self { model: Model { shifts: Vec::new(), ..model.clone() }, values: own, scene }
+        Self { model: Model { surface_shifts: Vec::new(), ..model.clone() }, values: own, excitation }
     }
 
     /// Its terms, with the nominal values of `other`: another place from which to search.
