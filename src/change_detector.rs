@@ -1,4 +1,4 @@
-//! Has the material changed? A cumulative sum over the innovation.
+//! Change detection: a cumulative sum (CUSUM) of the squared innovation.
 
 use crate::error::{ConfigError, require, require_positive};
 use crate::math::{larger, smaller};
@@ -18,13 +18,13 @@ use serde::{Deserialize, Serialize};
 pub struct ChangeConfig {
     /// Least usual size of an innovation, internal units of force (N on the bench).
     pub noise: f32,
-    /// Squared multiple of the usual size that is no sign of a change.
+    /// Squared multiple of the usual size below which the sum falls.
     pub allowance: f32,
     /// The most that one sample counts for.
     pub clip: f32,
-    /// The sum beyond which the material is another.
+    /// The sum above which a change is reported.
     pub threshold: f32,
-    /// Samples after a start or a change that are not looked at: the estimate is on its way.
+    /// Samples after a start or a change that are ignored while the estimate converges.
     pub settling: u16,
     /// Samples over which the usual size is averaged.
     pub memory: u16,
@@ -37,7 +37,7 @@ impl Default for ChangeConfig {
     }
 }
 
-/// What the detector has summed.
+/// State of the detector.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ChangeState {
     sum: f32,
@@ -59,7 +59,7 @@ impl ChangeConfig {
         Ok(self)
     }
 
-    /// Takes the innovation of one sample, in internal units; whether the material has changed. One that is no number says nothing.
+    /// Takes the innovation of one sample, in internal units; whether the material has changed. NaN is ignored.
     pub fn update(&self, state: &mut ChangeState, innovation: f32) -> bool {
         if state.since < self.settling || innovation.is_nan() {
             state.since = state.since.saturating_add(1);

@@ -65,7 +65,7 @@ impl Impedance {
         }
     }
 
-    /// Whether both are finite, and their sum: one look in the place of two.
+    /// Whether both and their sum are finite: one test instead of two.
     pub fn is_finite(self) -> bool {
         (self.stiffness + self.damping).is_finite()
     }

@@ -1,4 +1,4 @@
-//! All estimators side by side on one stream: what `palpate replay` runs on the host and the bench image on the device.
+//! All estimators side by side on one stream: as `palpate replay` runs them on the host and the replay image on the device.
 
 use crate::block::BlockConfig;
 use crate::block::BlockLeastMeanSquare;
@@ -85,7 +85,7 @@ impl Method {
         }
     }
 
-    /// The name in words.
+    /// The full name.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Rls => "recursive least squares",
@@ -202,7 +202,7 @@ struct Laws {
     directional_rls: EstimatorState<DirectionalRls>,
 }
 
-/// All of a bench but its ring.
+/// Validated settings of an [`EstimatorBank`]: all of it but its ring.
 #[derive(Debug, Clone)]
 pub struct ValidatedBankConfig {
     methods: Methods,
@@ -245,12 +245,12 @@ impl EstimatorBank {
         Ok(Self::from_validated(ValidatedBankConfig::new(config)?))
     }
 
-    /// It cannot fail, so that who holds a bench can have it made where it is to be: a second one does not fit every stack.
+    /// Infallible, so that a bank can be constructed in place: a second one does not fit every stack.
     pub fn from_validated(validated: ValidatedBankConfig) -> Self {
         Self { methods: validated.methods, stream: Stream::from_validated(validated.stream), laws: validated.laws }
     }
 
-    /// Takes other settings in place, and forgets everything: bounded work, without a second bench.
+    /// Replaces the settings in place and resets all state: bounded work, without a second bank.
     pub fn configure(&mut self, validated: &ValidatedBankConfig) {
         self.stream.configure(validated.stream);
         self.methods = validated.methods;

@@ -33,14 +33,14 @@
 //! |---|---|
 //! | [`Sample`], [`Impedance`] | the model, its units and signs |
 //! | [`FrontEnd`] | penetration, velocity, contact detection; rejection of bad samples |
-//! | [`CusumRls`] | **the law to take**: recursive, begins again where the material changes |
+//! | [`CusumRls`] | **recommended**: recursive, reset where the material changes |
 //! | [`Ewrls`], [`Sprls`], [`ResetRls`], [`Gradient`], [`DirectionalRls`] | other recursive laws |
 //! | [`BlockLeastSquares`], [`BlockLeastMeanSquare`], [`BlockLeastMeanFourth`] | laws on a window, at the same cost whatever its length |
 //! | [`AdaptiveWindow`] | block least squares whose window shrinks where the material changes |
 //! | [`ContactModel`], [`ModelStream`], [`ParameterRls`] | Hunt-Crossley, force bias or contact plane, tool mass |
-//! | [`direct`] | the same, summed anew at every sample |
-//! | [`Estimate`], [`Flags`] | the answer and its quality |
-//! | [`Identifier`] | all of it for one law |
+//! | [`direct`] | the same, summed over the window at every sample |
+//! | [`Estimate`], [`Flags`] | the estimate and its quality |
+//! | [`Identifier`] | front end, window and one law |
 //! | [`EstimatorBank`] | all laws side by side |
 //!
 //! SensorResolution, faults, calibration and link of a drive are in the crate `palpate-drive`.

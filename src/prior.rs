@@ -1,11 +1,11 @@
-//! What is believed of a contact before the first sample.
+//! Gaussian prior of stiffness and damping.
 
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require, require_positive};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
-/// K and B are zero, give or take a spread: a ridge in the sums, or the first covariance of a recursion.
+/// Zero mean and a standard deviation for K and for B: a ridge term in block sums, the initial covariance of a recursion.
 ///
 /// It takes the place of a minimum fill: while the samples say less than the prior the estimate stays small, and a few of
 /// them outweigh it. On the bench it is worth 1e-8 m^2 of `sum x^2`, one sample 0.1 mm deep.

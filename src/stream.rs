@@ -1,4 +1,4 @@
-//! What all estimators of one contact share: the front end, the ring of observations, the movement seen.
+//! What all estimators of one contact share: front end, ring of observations, range of movement.
 
 use crate::contact::Sample;
 use crate::error::ConfigError;
@@ -11,7 +11,7 @@ use crate::window::{Recent, Window};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
-/// What a loss of contact makes forgotten.
+/// What is discarded at a loss of contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub enum ContactLoss {
@@ -32,7 +32,7 @@ pub struct StreamConfig {
     pub front_end: FrontEndConfig,
     /// What the sensors resolve, for the intervals.
     pub sensors: SensorResolution,
-    /// What a loss of contact makes forgotten.
+    /// What is discarded at a loss of contact.
     pub contact_loss: ContactLoss,
     /// Samples after which a movement is half forgotten, for [`Flags::LITTLE_MOVEMENT`]; at least 1.
     pub movement_memory: u16,
@@ -63,7 +63,7 @@ pub struct Stream<const N: usize> {
     high: f32,
 }
 
-/// Settings that can be, with what follows from them.
+/// Validated settings with the constants derived from them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ValidatedStreamConfig {
     front_end: FrontEnd,
@@ -108,7 +108,7 @@ impl<const N: usize> Stream<N> {
         Ok(Self::from_validated(ValidatedStreamConfig::new(config)?))
     }
 
-    /// It cannot fail, so that who holds a large one can have it made where it is to be.
+    /// Infallible, so that a large value can be constructed in place.
     pub(crate) fn from_validated(validated: ValidatedStreamConfig) -> Self {
         Self {
             front_end: validated.front_end,
@@ -184,7 +184,7 @@ impl<const N: usize> Stream<N> {
     }
 }
 
-/// One law with what it has learnt.
+/// A law with its state and its latest estimate.
 #[derive(Debug, Clone)]
 pub struct EstimatorState<L: UpdateLaw> {
     law: L,
@@ -198,18 +198,18 @@ impl<L: UpdateLaw> EstimatorState<L> {
         Self { state: law.initial_state(), law, last: Estimate::UNKNOWN }
     }
 
-    /// Forgets what has been learnt.
+    /// Resets it to the initial state.
     pub fn restart(&mut self) {
         self.state = self.law.initial_state();
         self.last = Estimate::UNKNOWN;
     }
 
-    /// What has been learnt.
+    /// The state of the law.
     pub fn state(&self) -> &L::State {
         &self.state
     }
 
-    /// Follows `event`, which `stream` has just returned.
+    /// Updates with `event`, which `stream` has just returned.
     pub fn update<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Estimate {
         if event.lost {
             match stream.contact_loss {

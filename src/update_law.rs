@@ -20,7 +20,7 @@ pub trait UpdateLaw {
     /// How many of the latest observations it looks at; 1 for a recursive law.
     fn window(&self) -> usize;
 
-    /// One update. The newest of `recent` has not been seen before; the older ones have, in this order. A law on a window
+    /// One update. The newest of `recent` is new; the older ones were given before, in this order. A law on a window
     /// that finds another number of them than it has followed sums them anew, once, at a cost that grows with the window.
     fn update(&self, state: &mut Self::State, recent: Recent<'_>) -> Step;
 }

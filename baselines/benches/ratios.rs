@@ -31,33 +31,33 @@ fn each(bencher: Bencher<'_, '_>, mut update: impl FnMut(&Observation)) {
 
 #[divan::bench]
 fn nalgebra(bencher: Bencher<'_, '_>) {
-    let mut rival = NalgebraRls::default();
+    let mut baseline = NalgebraRls::default();
     each(bencher, |o| {
-        black_box(rival.update(o));
+        black_box(baseline.update(o));
     });
 }
 
 #[divan::bench]
 fn kfilter(bencher: Bencher<'_, '_>) {
-    let mut rival = Kfilter::default();
+    let mut baseline = Kfilter::default();
     each(bencher, |o| {
-        black_box(rival.update(o));
+        black_box(baseline.update(o));
     });
 }
 
 #[divan::bench]
 fn adskalman(bencher: Bencher<'_, '_>) {
-    let mut rival = Adskalman::default();
+    let mut baseline = Adskalman::default();
     each(bencher, |o| {
-        black_box(rival.update(o));
+        black_box(baseline.update(o));
     });
 }
 
 #[divan::bench]
 fn mini(bencher: Bencher<'_, '_>) {
-    let mut rival = minikalman();
+    let mut baseline = minikalman();
     each(bencher, |o| {
-        black_box(rival(o));
+        black_box(baseline(o));
     });
 }
 

@@ -8,7 +8,7 @@ use palpate::{
 use palpate_baselines::{Adskalman, COVARIANCE, FORGETTING, Kfilter, NalgebraRls, minikalman, nalgebra_window};
 
 /// Observations from which on the errors count: before, K is about nothing.
-const BEGIN: usize = 300;
+const FIRST_SCORED_SAMPLE: usize = 300;
 
 /// By name and window, the rms error; `None` where there is nothing to hold it against.
 pub fn of(name: &str, window: Option<u16>, rows: &[Observation]) -> Option<f64> {
@@ -16,16 +16,16 @@ pub fn of(name: &str, window: Option<u16>, rows: &[Observation]) -> Option<f64> 
     let last = usize::from(config.window);
     match name {
         "nalgebra" => {
-            let mut rival = NalgebraRls::default();
-            Some(recursive(rows, |o| rival.update(o)))
+            let mut baseline = NalgebraRls::default();
+            Some(recursive(rows, |o| baseline.update(o)))
         }
         "kfilter" => {
-            let mut rival = Kfilter::default();
-            Some(recursive(rows, |o| rival.update(o)))
+            let mut baseline = Kfilter::default();
+            Some(recursive(rows, |o| baseline.update(o)))
         }
         "adskalman" => {
-            let mut rival = Adskalman::default();
-            Some(recursive(rows, |o| rival.update(o)))
+            let mut baseline = Adskalman::default();
+            Some(recursive(rows, |o| baseline.update(o)))
         }
         "minikalman" => Some(recursive(rows, minikalman())),
         "ewrls" | "ewrls_alone" => {
@@ -62,7 +62,7 @@ fn recursive(rows: &[Observation], mut update: impl FnMut(&Observation) -> Imped
         covariance = (covariance - gain * spread.transpose()) / lambda;
         f64::from(update(o).stiffness) / theta.x - 1.0
     });
-    rms(&errors.collect::<Vec<_>>()[BEGIN..])
+    rms(&errors.collect::<Vec<_>>()[FIRST_SCORED_SAMPLE..])
 }
 
 fn windowed(rows: &[Observation], last: usize, mut update: impl FnMut(Recent<'_>) -> Impedance) -> f64 {
@@ -70,7 +70,7 @@ fn windowed(rows: &[Observation], last: usize, mut update: impl FnMut(Recent<'_>
     for k in 0..rows.len() {
         let seen = &rows[(k + 1).saturating_sub(last)..=k];
         let got = f64::from(update(Recent::of(seen)).stiffness);
-        if k >= BEGIN {
+        if k >= FIRST_SCORED_SAMPLE {
             errors.push(got / least_squares(seen).x - 1.0);
         }
     }
@@ -98,7 +98,7 @@ fn fourth(law: &impl UpdateLaw, rows: &[Observation], last: usize) -> Option<f64
     for k in 0..rows.len() {
         let seen = &rows[(k + 1).saturating_sub(last)..=k];
         let after = law.update(&mut state, Recent::of(seen)).estimate;
-        if k >= BEGIN {
+        if k >= FIRST_SCORED_SAMPLE {
             errors.push(f64::from(after.stiffness) / fourth_step(seen, before).x - 1.0);
         }
         before = after;

@@ -10,7 +10,7 @@ use palpate_baselines::{Adskalman, Kfilter, NalgebraRls, minikalman, nalgebra_wi
 use palpate_firmware::measurement::{Gauge, Work};
 use palpate_firmware::recording::{Fault, Recording};
 
-/// For the one rival whose buffers stand on a heap; nothing is allocated in an update.
+/// For the one baseline whose buffers stand on a heap; nothing is allocated in an update.
 #[global_allocator]
 static HEAP: LlffHeap = LlffHeap::empty();
 
@@ -67,7 +67,7 @@ pub fn run(recording: &Recording, mut gauge: Gauge) -> Result<(), Fault> {
     Ok(())
 }
 
-/// One recursive rival over the observations in contact, with the newest at hand; it is not told of a loss, so that its state is
+/// One recursive baseline over the observations in contact, with the newest at hand; it is not told of a loss, so that its state is
 /// that of one long contact.
 fn recursive(
     recording: &Recording,

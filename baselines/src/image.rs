@@ -1,4 +1,4 @@
-//! The rivals' image: every rival on the recording and by the gauge of the profile image.
+//! The image of the baselines: each on the recording and with the measurement of the profile image.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

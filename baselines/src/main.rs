@@ -1,4 +1,4 @@
-//! The table of `palpate` beside its rivals: `cargo run --release -p palpate-baselines`; with `--readme` its rows of the README are
+//! The table of `palpate` beside its baselines: `cargo run --release -p palpate-baselines`; with `--readme` its rows of the README are
 //! written there.
 
 #[cfg(not(target_os = "none"))]
@@ -17,7 +17,7 @@ fn main() -> std::process::ExitCode {
     match done {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("rivals: {error:#}");
+            eprintln!("baselines: {error:#}");
             std::process::ExitCode::FAILURE
         }
     }

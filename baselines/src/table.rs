@@ -42,7 +42,7 @@ const ROWS: [Row; 16] = [
 /// What was measured of both.
 struct Measured {
     ours: Profile,
-    rivals: Profile,
+    baselines: Profile,
     rows: Vec<Observation>,
 }
 
@@ -51,7 +51,7 @@ impl Measured {
         let ours = Profile::take(Leave::Install)?;
         Ok(Self {
             ours,
-            rivals: Profile::of(Leave::Install, "palpate-baselines", "--example", "baselines")?,
+            baselines: Profile::of(Leave::Install, "palpate-baselines", "--example", "baselines")?,
             rows: observations()?,
         })
     }
@@ -64,7 +64,7 @@ impl Measured {
     fn readme(&self) -> Result<String> {
         let mut table = HEAD.to_owned();
         for (label, ours, name, window) in ROWS {
-            let figures = if ours { &self.ours.figures } else { &self.rivals.figures };
+            let figures = if ours { &self.ours.figures } else { &self.baselines.figures };
             let found = figures.iter().find(|f| f.name == name && f.window == window);
             table += &self.line(label, found.with_context(|| format!("{name} was not measured"))?);
         }
@@ -100,12 +100,12 @@ pub fn print() -> Result<()> {
     print!("{HEAD}");
     let whole = |f: &&Figures| !f.name.starts_with("identify") && !f.name.starts_with("front");
     let compared = measured.ours.figures.iter().filter(whole).map(|figures| ("palpate ", figures));
-    for (by, f) in measured.rivals.figures.iter().map(|figures| ("", figures)).chain(compared) {
+    for (by, f) in measured.baselines.figures.iter().map(|figures| ("", figures)).chain(compared) {
         if accuracy::of(&f.name, f.window, &measured.rows).is_some() {
             print!("{}", measured.line(&format!("{by}{}", f.name), f));
         }
     }
-    let passes = measured.ours.passes() + measured.rivals.passes();
+    let passes = measured.ours.passes() + measured.baselines.passes();
     println!("\nCounted twice alike on {passes} passes. No board was measured.");
     Ok(())
 }
@@ -145,14 +145,14 @@ mod tests {
         );
         // Of our own rows another test sees to it that they cost what the budget says.
         let budget = kept_costs().expect("the budget");
-        let rivals = match tools::for_profiling(Leave::Look) {
+        let baselines = match tools::for_profiling(Leave::Look) {
             Ok(_) => Some(
                 Profile::of(Leave::Look, "palpate-baselines", "--example", "baselines")
                     .unwrap_or_else(|error| panic!("{error:#}")),
             ),
             Err(MissingTools(missing)) => {
                 assert!(std::env::var_os("PALPATE_DEVICE").is_none(), "{missing:?}");
-                eprintln!("left out: the rivals; {missing:?}");
+                eprintln!("left out: the baselines; {missing:?}");
                 None
             }
         };
@@ -163,8 +163,8 @@ mod tests {
                     .find(|c| c.update == name && c.window == window)
                     .map(|c| [c.instructions_mean, c.instructions_worst.into()])
             } else {
-                let Some(rivals) = &rivals else { continue };
-                rivals
+                let Some(baselines) = &baselines else { continue };
+                baselines
                     .figures
                     .iter()
                     .find(|f| f.name == name && f.window == window)

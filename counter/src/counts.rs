@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use crate::costs::{Cost, Costs};
 
 /// Cycles that a taken branch waits for the pipeline at least and at most (ARM DDI 0439, table 3-1: P is 1 to 3).
-const REFILL: [u32; 2] = [1, 3];
+const PIPELINE_REFILL_CYCLES: [u32; 2] = [1, 3];
 
 /// One pass through the region.
 #[derive(Debug, Clone, Copy, Default)]
@@ -65,8 +65,8 @@ impl Counts {
         if let (Some(pass), Some((from, cost))) = (self.present.as_mut(), self.before)
             && address != from + cost.size
         {
-            pass.lo += REFILL[0];
-            pass.hi += REFILL[1];
+            pass.lo += PIPELINE_REFILL_CYCLES[0];
+            pass.hi += PIPELINE_REFILL_CYCLES[1];
         }
     }
 

@@ -74,7 +74,7 @@ fn prepare(arguments: &[String]) -> Result<Counts, String> {
     Ok(Counts::new(address("begin")?, address("end")?, address("case")?, costs, PathBuf::from(value("out")?)))
 }
 
-/// A block was translated: every instruction of it is to be told when it is executed. By address alone, for QEMU 7.2 gives
+/// A block was translated: every instruction of it gets a callback at its execution. By address alone, for QEMU 7.2 gives
 /// a wrong size to an instruction just before a page's end.
 extern "C" fn translated(_id: u64, block: *mut qemu::Block) {
     // SAFETY: QEMU hands over a block that is valid during this call, and indices are below its count.
@@ -82,8 +82,8 @@ extern "C" fn translated(_id: u64, block: *mut qemu::Block) {
         for at in 0..qemu::qemu_plugin_tb_n_insns(block) {
             let instruction = qemu::qemu_plugin_tb_get_insn(block, at);
             let address = qemu::qemu_plugin_insn_vaddr(instruction);
-            let told = address as usize as *mut c_void;
-            qemu::qemu_plugin_register_vcpu_insn_exec_cb(instruction, executed, qemu::NO_REGISTERS, told);
+            let user_data = address as usize as *mut c_void;
+            qemu::qemu_plugin_register_vcpu_insn_exec_cb(instruction, executed, qemu::NO_REGISTERS, user_data);
         }
     }
 }

@@ -20,7 +20,7 @@ pub const NO_REGISTERS: c_int = 0;
 // SAFETY: names and signatures are those of the interface, which QEMU exports to its plugins.
 unsafe extern "C" {
     pub fn qemu_plugin_register_vcpu_tb_trans_cb(id: u64, callback: extern "C" fn(u64, *mut Block));
-    pub fn qemu_plugin_register_atexit_cb(id: u64, callback: extern "C" fn(u64, *mut c_void), told: *mut c_void);
+    pub fn qemu_plugin_register_atexit_cb(id: u64, callback: extern "C" fn(u64, *mut c_void), user_data: *mut c_void);
     pub fn qemu_plugin_tb_n_insns(block: *const Block) -> usize;
     pub fn qemu_plugin_tb_get_insn(block: *const Block, at: usize) -> *mut Instruction;
     pub fn qemu_plugin_insn_vaddr(instruction: *const Instruction) -> u64;
@@ -28,6 +28,6 @@ unsafe extern "C" {
         instruction: *mut Instruction,
         callback: extern "C" fn(c_uint, *mut c_void),
         flags: c_int,
-        told: *mut c_void,
+        user_data: *mut c_void,
     );
 }

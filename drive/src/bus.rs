@@ -1,4 +1,4 @@
-//! An SPI device whose every wait ends: what an interrupt may use.
+//! An SPI device with bounded waiting, for use in an interrupt.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
@@ -11,7 +11,7 @@ use embedded_hal_nb::spi::FullDuplex;
 pub enum BusFault {
     /// The peripheral did not answer within the polls that it is given.
     Timeout,
-    /// The peripheral told of a fault.
+    /// The peripheral reported a fault.
     Bus(ErrorKind),
     /// The chip-select pin could not be set.
     Select,

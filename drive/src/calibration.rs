@@ -1,4 +1,4 @@
-//! What turns counts into metres and newtons: data with a version and a CRC, in flash.
+//! Calibration: conversion of counts to metres and newtons, stored in flash with a version and a CRC.
 
 use serde::{Deserialize, Serialize};
 

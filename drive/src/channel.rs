@@ -1,21 +1,21 @@
-//! Is a reading one that the sensor can have meant?
+//! Plausibility of sensor readings: stuck values and jumps.
 
-/// What is remembered of one sensor.
+/// Plausibility state of one sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PlausibilityMonitor {
     last: Option<i32>,
-    /// Ticks that it has said the same.
+    /// Ticks of unchanged readings.
     same: u16,
     /// Ticks since its last reading.
     silent: u16,
 }
 
-/// What a reading is against those before it.
+/// Result of the check of one reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plausibility {
-    /// It has been the same for too long.
+    /// Unchanged for too long.
     pub stuck: bool,
-    /// It is further from the last one than it can have come.
+    /// Further from the last one than the maximum speed allows.
     pub jumped: bool,
 }
 
@@ -26,7 +26,7 @@ impl PlausibilityMonitor {
     }
 
     /// A reading: stuck where it has been the same for `stuck_after` ticks (0: never), jumped where it moved by more than
-    /// `step` counts a tick. The next reading is held against this one in any case, so a new place is believed at the second look.
+    /// `step` counts a tick. The next reading is held against this one in any case, so a new position is accepted at its second reading.
     pub fn take(&mut self, reading: i32, elapsed: u8, stuck_after: u16, step: i32) -> Plausibility {
         let ticks = self.silent.saturating_add(u16::from(elapsed));
         self.silent = 0;

@@ -1,10 +1,10 @@
-//! How often what happened: written by the interrupt alone, read by whoever wants.
+//! Event counters: written by the interrupt alone, readable anywhere.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use crate::faults::Faults;
 
-/// Counters. The interrupt is their only writer, so a load and a store are as good as a read-modify-write, and nobody waits.
+/// Counters. The interrupt is their only writer, so a load and a store replace a read-modify-write.
 #[derive(Debug, Default)]
 pub struct Counters {
     faults: [AtomicU32; Faults::COUNT],
@@ -58,7 +58,7 @@ impl Counters {
         core::array::from_fn(|bit| self.faults.get(bit).map_or(0, |counter| counter.load(Ordering::Relaxed)))
     }
 
-    /// Ticks, samples used, times that the estimator began anew, tares that were refused.
+    /// Ticks, samples used, resets of the estimator, refused tares.
     pub fn others(&self) -> [u32; 4] {
         [&self.ticks, &self.used, &self.restarts, &self.refused_tares].map(|counter| counter.load(Ordering::Relaxed))
     }

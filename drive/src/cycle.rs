@@ -1,4 +1,4 @@
-//! One tick of the interrupt: from the words of the sensors to what is published.
+//! One tick of the control interrupt: from the raw words of the sensors to a report.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,44 +16,44 @@ use palpate::Estimate;
 use palpate::Flags;
 use palpate::Sample;
 
-/// What an estimate rests on.
+/// Which sample an estimate is based on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Validity {
     /// This tick's sample.
     Live,
     /// An earlier sample, no longer ago than the hold time.
     Held,
-    /// Nothing: K and B are zero and their intervals infinite.
+    /// No sample: K and B are zero and their intervals infinite.
     Void,
 }
 
-/// What can be asked of the interrupt, one thing a tick.
+/// A command to the interrupt; one is carried out per tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Order {
-    /// The force at present is no force.
+    /// Zero the force sensor: the present force is defined as zero.
     Tare,
-    /// Forget the contact.
+    /// Reset the estimator.
     Restart,
-    /// Latched faults were seen.
+    /// Clear the latched faults.
     Acknowledge,
 }
 
-/// What a tick publishes.
+/// The result of a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Report {
     /// Ticks since the start; it wraps.
     pub tick: u32,
-    /// What went in.
+    /// The input of the tick.
     pub input: Input,
     /// The sample that the estimator was given, if any.
     pub sample: Option<Sample>,
     /// Every fault that holds, or held within the last ten to twenty ticks.
     pub faults: Faults,
-    /// What the estimate rests on.
+    /// Which sample the estimate is based on.
     pub validity: Validity,
-    /// The estimator began anew with this sample.
+    /// The estimator was reset at this sample.
     pub restarted: bool,
-    /// The number of the settings.
+    /// Revision of the settings.
     pub revision: u8,
     /// The estimate.
     pub estimate: Estimate,
@@ -63,7 +63,7 @@ pub struct Report {
     pub effort: f32,
 }
 
-/// The work of the interrupt, with all that it remembers.
+/// The control cycle with its state.
 #[derive(Debug)]
 pub struct Cycle<'a> {
     calibration: Calibration,
@@ -98,7 +98,7 @@ struct Counts {
 }
 
 impl<'a> Cycle<'a> {
-    /// Begins with `found`, the faults that were there at the start.
+    /// Starts with `found`, the faults present at power-on.
     pub fn new(
         calibration: Calibration,
         estimator: &'a mut Estimator,
@@ -146,7 +146,7 @@ impl<'a> Cycle<'a> {
         self.publish(input, sample, restarted, estimate, faults)
     }
 
-    /// Carries out an order.
+    /// Carries out a command.
     pub fn order(&mut self, order: Order) {
         match order {
             Order::Tare => self.tare = Some(Tare::default()),
@@ -155,7 +155,7 @@ impl<'a> Cycle<'a> {
         }
     }
 
-    /// Takes other settings, and forgets the contact.
+    /// Replaces the settings and resets the estimator.
     pub fn apply(&mut self, settings: &ValidatedSettings) {
         self.estimator.apply(settings);
         self.stale = true;
@@ -166,7 +166,7 @@ impl<'a> Cycle<'a> {
         self.scale
     }
 
-    /// What the words mean, if every one of them can be believed.
+    /// The decoded sensor counts, if no fault of this tick invalidates them.
     fn read(&mut self, input: &Input, elapsed: u8, faults: &mut Faults) -> Option<Counts> {
         let depth = self.read_position(input, elapsed, faults);
         let code = self.read_force(input, elapsed, faults);
@@ -292,7 +292,7 @@ impl<'a> Cycle<'a> {
             revision: self.estimator.revision(),
             estimate,
             zero: self.scale.zero,
-            // The force controller's place: it is given a contact only where there is no fault at all.
+            // Place for a force controller: it receives an impedance only while there is no fault.
             effort: effort(contact, sample, &self.bounds, |_, _| 0.0),
         }
     }

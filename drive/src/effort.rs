@@ -1,4 +1,4 @@
-//! The one place where an estimate becomes what a force controller is given, and where its effort leaves the drive.
+//! From an estimate to the input of a force controller, and the limits of its effort.
 
 use crate::cycle::Validity;
 use crate::faults::Faults;
@@ -7,7 +7,7 @@ use palpate::Flags;
 use palpate::math::{larger, smaller};
 use palpate::{Impedance, Sample};
 
-/// Between what an estimate is believed for control, and how large an effort may be.
+/// Range of estimates accepted for control, and the largest effort.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// Least K and B that a controller is designed for.
@@ -27,7 +27,7 @@ impl Bounds {
     };
 }
 
-/// What makes an estimate no ground for control.
+/// Flags that exclude an estimate from control.
 const DOUBTS: Flags = Flags::NO_CONTACT
     .union(Flags::TOO_FEW)
     .union(Flags::HELD)
@@ -46,8 +46,8 @@ pub fn trusted(estimate: &Estimate, validity: Validity, faults: Faults, bounds: 
     })
 }
 
-/// The effort for the current loop: what `controller` makes of the touched thing and the sample, within the bounds. Zero on any
-/// fault, zero where it is not a number, and zero where nothing is trusted that it could be designed for.
+/// The effort for the current loop: the output of `controller` for the estimated impedance and the sample, within the bounds. Zero on any
+/// fault, zero where it is not a number, and zero without a trusted impedance.
 pub fn effort(
     trusted: Option<Impedance>,
     sample: Option<Sample>,

@@ -1,4 +1,4 @@
-//! The one estimator of a drive, out of all.
+//! The estimator of a drive, selected by its settings.
 
 use crate::{Calibration, Settings};
 use palpate::Estimate;
@@ -7,8 +7,8 @@ use palpate::Sample;
 use palpate::error::ConfigError;
 use palpate::{EstimatorBank, Method, ValidatedBankConfig};
 
-/// The estimator that [`Settings`] choose. It holds the state of all, 28 kB, so that a settings needs neither allocation nor a second
-/// one.
+/// The estimator selected by [`Settings`]. It holds the state of all methods, 28 kB, so that a change needs neither allocation nor a
+/// second one.
 #[derive(Debug, Clone)]
 pub struct Estimator {
     bank: EstimatorBank,
@@ -17,7 +17,7 @@ pub struct Estimator {
     revision: u8,
 }
 
-/// Settings that can be, with all that follows from them but the memory: what an idle loop works out and the interrupt takes.
+/// Validated settings with the derived constants: prepared in the idle loop, applied by the interrupt.
 #[derive(Debug, Clone)]
 pub struct ValidatedSettings {
     bank_config: ValidatedBankConfig,
@@ -48,7 +48,7 @@ impl Estimator {
         Ok(Self { bank: EstimatorBank::from_validated(bank_config), method, hold, revision })
     }
 
-    /// Takes other settings in place and forgets everything: bounded work, for the interrupt itself.
+    /// Replaces the settings in place and resets all state: bounded work, for the interrupt itself.
     pub fn apply(&mut self, settings: &ValidatedSettings) {
         self.bank.configure(&settings.bank_config);
         (self.method, self.hold, self.revision) = (settings.method, settings.hold, settings.revision);

@@ -1,4 +1,4 @@
-//! What can go wrong on a drive.
+//! Faults of a drive.
 
 bitflags::bitflags! {
     /// Faults. One that comes and goes stays set for one to two times [`Faults::LINGER`] ticks after the last time.
@@ -68,7 +68,7 @@ impl Faults {
     /// Ticks that a fault stays set after the last time, at least; twice as many at most.
     pub const LINGER: u8 = 10;
 
-    /// Those that hold as long as their cause, and are told with every tick that it holds.
+    /// Those that hold as long as their cause and are reported at each of its ticks.
     pub const CONDITIONS: Self = Self::LINK_GONE.union(Self::BROWN_OUT);
 
     /// Those that stay until they are acknowledged.
@@ -77,7 +77,7 @@ impl Faults {
     /// Those that stay until the next start.
     pub const STANDING: Self = Self::CALIBRATION.union(Self::CLOCK);
 
-    /// Those that say nothing against the sample of their tick.
+    /// Those that do not invalidate the sample of their tick.
     pub const HARMLESS: Self = Self::OVERRUN.union(Self::LINK_GONE).union(Self::LATCHED).union(Self::STANDING);
 
     /// Its name in a table.

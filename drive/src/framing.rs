@@ -35,7 +35,7 @@ pub fn encode<'a, T: Serialize>(message: &T, line: &'a mut [u8; LINE_BYTES]) -> 
     line.get(..=used)
 }
 
-/// What came over the line, counted.
+/// Counters of the frames received.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LinkCounters {
     /// Whole frames of this version.
@@ -48,12 +48,12 @@ pub struct LinkCounters {
     pub checksum: u32,
     /// Of another version.
     pub version: u32,
-    /// Whole, and no message that is known, or one that may not be.
+    /// Valid frames with an unknown or inadmissible message.
     pub refused: u32,
 }
 
 impl LinkCounters {
-    /// All that was not taken.
+    /// All frames that were not accepted.
     pub fn lost(&self) -> u32 {
         [self.oversized, self.malformed, self.checksum, self.version, self.refused]
             .into_iter()
@@ -78,7 +78,7 @@ impl Default for Receiver {
 }
 
 impl Receiver {
-    /// Nothing was heard yet.
+    /// Before the first byte.
     pub const fn new() -> Self {
         let link_counters = LinkCounters { frames: 0, oversized: 0, malformed: 0, checksum: 0, version: 0, refused: 0 };
         Self { line: [0; LINE_BYTES], used: 0, ready: None, link_counters }
@@ -136,7 +136,7 @@ impl Receiver {
         left.is_empty().then_some(message)
     }
 
-    /// Counts the frame that is whole as one that may not be.
+    /// Counts the complete frame as inadmissible.
     pub fn refuse(&mut self) {
         self.link_counters.refused = self.link_counters.refused.saturating_add(1);
     }

@@ -1,11 +1,11 @@
-//! Everything that one tick sees.
+//! The input of one tick.
 
 use serde::{Deserialize, Serialize};
 
 use crate::faults::Faults;
 
 bitflags::bitflags! {
-    /// What went with the words of a tick.
+    /// Conditions reported with the sensor words of a tick.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub struct InputStatus: u8 {
         /// The encoder's bus did not answer.
@@ -26,7 +26,7 @@ bitflags::bitflags! {
 /// Bytes of an [`Input`] on the link.
 pub const INPUT_BYTES: usize = 10;
 
-/// The words that the sensors' buses brought, and what else happened.
+/// The raw words of the sensors, with the conditions of the tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[u8; INPUT_BYTES]", into = "[u8; INPUT_BYTES]")]
 pub struct Input {
@@ -38,7 +38,7 @@ pub struct Input {
     pub force: u32,
     /// Ticks since the input before: 1, or more where ticks were lost.
     pub elapsed: u8,
-    /// What else happened.
+    /// Conditions of the tick.
     pub status: InputStatus,
 }
 
@@ -46,7 +46,7 @@ impl Input {
     /// Nothing was read.
     pub const NOTHING: Self = Self { angle: 0, diagnostics: 0, force: 0, elapsed: 1, status: InputStatus::NO_SAMPLE };
 
-    /// The faults that its status tell of.
+    /// The faults that the status reports.
     pub fn faults(&self) -> Faults {
         let mut faults = Faults::empty();
         for (note, fault) in [

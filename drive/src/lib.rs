@@ -1,4 +1,4 @@
-//! What a drive needs beside the estimators of [`palpate`]: sensors, faults, calibration and the serial link.
+//! What a drive needs besides the estimators of [`palpate`]: sensors, faults, calibration and the serial link.
 //!
 //! All of it is free of registers, so that it runs unchanged in the interrupt of `firmware/src/bin/drive`, in a firmware of
 //! your own, and in the tests on a host. One millisecond is one [`Input`] (the words that the sensors' buses brought, and what

@@ -1,4 +1,4 @@
-//! What drive and host say to each other; [`super::framing`] is how.
+//! The messages between drive and host; [`super::framing`] defines the frames.
 //!
 //! The host sends a [`Request`]; the drive does it or refuses it, answers what was asked and then, with the request's number,
 //! how it went. Estimates and samples come unasked at the rate that was asked for.
@@ -31,7 +31,7 @@ pub struct Request<'a> {
 /// What to do.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Command<'a> {
-    /// Nothing but to know that the host is there.
+    /// Sign of life of the host.
     Alive,
     /// Tell the identity.
     Identify,
@@ -56,7 +56,7 @@ pub enum Command<'a> {
 /// Most inputs of one request.
 pub const FEED: usize = 16;
 
-/// What is sent unasked.
+/// Periodic messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Streams {
     /// An estimate every so many ticks, and at each where a fault begins; 0: none.
@@ -75,7 +75,7 @@ pub enum Source {
     Link,
 }
 
-/// What the drive says.
+/// A message of the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Message<'a> {
     /// How a request went.
@@ -140,7 +140,7 @@ pub struct Identity<'a> {
     pub found: u32,
 }
 
-/// How often what happened.
+/// The event counters.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CountersMessage {
     /// Ticks at which each fault occurred, in the order of their bits.
@@ -149,7 +149,7 @@ pub struct CountersMessage {
     pub others: [u32; 4],
     /// Reports that the idle loop had no time for.
     pub dropped: u32,
-    /// Received bytes that the idle loop had no time for, or the line upset.
+    /// Received bytes lost by overrun of the queue or by an error of the line.
     pub rx_overruns: u32,
     /// Inputs of the link that waited for none, and ticks that waited for an input.
     pub starved: u32,
@@ -161,12 +161,12 @@ pub struct CountersMessage {
     pub link_counters: LinkCounters,
 }
 
-/// An estimate as it is told.
+/// An estimate as it is sent.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EstimateMessage {
     /// The tick.
     pub tick: u32,
-    /// What it rests on.
+    /// Which sample it is based on.
     pub validity: Validity,
     /// The bits of [`Faults`].
     pub faults: u32,
@@ -184,7 +184,7 @@ pub struct EstimateMessage {
     pub effort: f32,
 }
 
-/// A sample as it is told.
+/// A sample as it is sent.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SampleMessage {
     /// The tick.
@@ -198,7 +198,7 @@ pub struct SampleMessage {
 }
 
 impl EstimateMessage {
-    /// What is told of `report`.
+    /// The message of `report`.
     pub fn of(report: &Report) -> Self {
         let e = &report.estimate;
         Self {
@@ -234,7 +234,7 @@ impl EstimateMessage {
 }
 
 impl SampleMessage {
-    /// What is told of `report`.
+    /// The message of `report`.
     pub fn of(report: &Report) -> Self {
         Self {
             tick: report.tick,

@@ -1,4 +1,4 @@
-//! What the host and the bench image hand each other: two files, read and written by semihosting.
+//! The format of the two files by which host and replay image exchange samples and estimates, through semihosting.
 //!
 //! In: the length of the settings (u32), the settings ([`EstimatorBankConfig`] by postcard), then 12 bytes a sample. Out: a record
 //! a sample (a status word, then 32 bytes for each method that runs), then [`ReplayCounters`]. All words little-endian, floats
@@ -27,10 +27,10 @@ pub const COUNTER_BYTES: usize = 4 * WORD;
 const WORD: usize = 4;
 const ESTIMATE_BYTES: usize = 8 * WORD;
 
-/// What one update returned.
+/// The result of one update.
 pub type UpdateResult = Result<BankEstimates, Rejection>;
 
-/// How the run went, seen from the interrupt.
+/// Counters of the interrupt of the replay image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ReplayCounters {
     /// Samples taken.

@@ -1,4 +1,4 @@
-//! What can be chosen while the drive runs.
+//! Settings that can be changed while the drive runs.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,9 +25,9 @@ pub struct Settings {
     pub window: u16,
     /// Cut-off of the filter, 1 to 400 Hz.
     pub cutoff: f32,
-    /// How the rate is had.
+    /// How the rate is computed.
     pub velocity: Velocity,
-    /// What a loss of contact makes forgotten.
+    /// What is discarded at a loss of contact.
     pub contact_loss: ContactLoss,
     /// Of `ewrls`.
     pub forgetting: f32,
@@ -64,7 +64,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// What the estimators are built of: the settings of `palpate replay` for a recording of this drive.
+    /// The configuration of the estimators: that of `palpate replay` for a recording of this drive.
     ///
     /// # Errors
     /// A setting that is out of its limits here; the estimators have more.

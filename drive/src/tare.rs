@@ -1,9 +1,9 @@
-//! The zero of the force sensor, taken anew.
+//! Taring: the zero of the force sensor is measured again.
 
 /// Samples that a tare is the mean of: a fifth of a second, ten periods of the mains.
 pub const TARE_SAMPLES: u16 = 200;
 
-/// A tare on its way.
+/// A tare in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tare {
     taken: u16,

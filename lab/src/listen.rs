@@ -87,7 +87,7 @@ fn method(name: &str) -> Method {
 }
 
 /// Ticks between two estimates on the screen.
-const SHOWN: u16 = 50;
+const DISPLAY_PERIOD_TICKS: u16 = 50;
 
 /// Runs `palpate listen`.
 ///
@@ -105,7 +105,7 @@ pub fn run(args: &ListenArgs) -> Result<()> {
     client.quiet()?;
     let about = client.about()?;
     eprintln!("{}", screen::identity(&about));
-    let settings = choose(&mut client, args, about.settings)?;
+    let settings = new_settings(&mut client, args, about.settings)?;
     orders(&mut client, args)?;
     let mut session = Session {
         taken: Taken::default(),
@@ -139,7 +139,7 @@ fn read_fed(path: &std::path::Path, args: &ListenArgs) -> Result<(Recording, Rig
 }
 
 /// Sends the settings where one of them was given; those that hold then.
-fn choose(client: &mut Client, args: &ListenArgs, before: Settings) -> Result<Settings> {
+fn new_settings(client: &mut Client, args: &ListenArgs, before: Settings) -> Result<Settings> {
     let chosen = Settings {
         method: args.method.unwrap_or(before.method),
         window: args.window.unwrap_or(before.window),
@@ -173,7 +173,7 @@ fn begin(client: &mut Client, args: &ListenArgs, feeding: bool) -> Result<()> {
     if feeding {
         client.demand(Command::Source(Source::Link), "the test mode")?;
     }
-    let streams = Streams { estimates: SHOWN, samples: args.record.is_some() };
+    let streams = Streams { estimates: DISPLAY_PERIOD_TICKS, samples: args.record.is_some() };
     client.demand(Command::Stream(streams), "the streams")?;
     // Another source is another beginning already.
     if args.record.is_some() && !feeding {
@@ -249,7 +249,7 @@ impl Session {
 
 /// What a drive is and how it is set.
 #[derive(Debug, Clone)]
-pub struct About {
+pub struct DriveInfo {
     /// Version of its sources.
     pub version: String,
     /// CRC-32 of its image.

@@ -201,5 +201,5 @@ pub fn run(args: &ProfileArgs) -> Result<()> {
     if beyond.is_empty() {
         return Ok(());
     }
-    bail!("beyond the budget ({}; --renew-budget takes them over):\n{}", budget::FILE, beyond.trim_end())
+    bail!("beyond the budget ({}; --renew-budget takes them over):\n{}", budget::BUDGET_FILE, beyond.trim_end())
 }

@@ -33,7 +33,7 @@ impl QemuBench {
         Ok(Self { qemu: tools::for_the_device(leave)?, image: build("palpate-firmware", "--bin", "replay")? })
     }
 
-    /// Feeds `samples` to the image and hands each outcome to `take`, in order; `progress` is told meanwhile how many are
+    /// Feeds `samples` to the image and hands each outcome to `take`, in order; `progress` is called meanwhile with how many are
     /// done. The time is the emulator's own: it sleeps through what the core sleeps.
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl QemuBench {
     }
 }
 
-/// Waits for the emulator as long as its output grows; `grown` is told its size.
+/// Waits for the emulator as long as its output grows; `grown` is called with its size.
 fn wait(child: &mut Child, output: &Path, grown: impl Fn(u64)) -> Result<()> {
     let (mut size, mut since) = (0, Instant::now());
     while child.try_wait().context("the emulator cannot be waited for")?.is_none() {

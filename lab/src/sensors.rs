@@ -59,14 +59,14 @@ impl Figures {
 
 /// Steps of noise from which rounding is as good as noise: Gaussian noise of half a step leaves less than two per cent of
 /// the rounding's error tied to where the truth lies in the step.
-const DITHERED: f64 = 0.5;
+const DITHER_FRACTION: f64 = 0.5;
 
 impl Channel {
     fn thinned(self, parts: usize) -> Self {
         let parts = parts as f64;
         let rounding = self.resolution / 12f64.sqrt();
         let shake = (self.noise * self.noise - rounding * rounding).max(0.0).sqrt();
-        if shake >= DITHERED * self.resolution {
+        if shake >= DITHER_FRACTION * self.resolution {
             return Self { resolution: self.resolution / parts.sqrt(), noise: self.noise / parts.sqrt() };
         }
         Self { noise: (shake * shake / parts + rounding * rounding).sqrt(), ..self }

@@ -1,4 +1,4 @@
-//! Block least squares over a window that shrinks where the material has changed.
+//! Block least squares over a window that is shortened where the material has changed.
 
 use crate::block::config::BlockConfig;
 use crate::block::law::BlockState;

@@ -1,16 +1,15 @@
 //! The window's sums at a cost that does not depend on its length, without drift.
 //!
-//! The window is two runs of samples, each with sums of its own about a nearby estimate: `older`, the older run, which only
-//! loses samples, and `next`, the newer one, which only gains them. Once the older is empty `next` equals the window; it
-//! becomes the older, and a new run begins. No sum outlives two windows, so nothing drifts.
+//! The window is split into two runs of samples, each with sums about a nearby estimate: samples only leave the `older` run and
+//! only enter the `newer` one. Once `older` is empty, `newer` equals the window; it becomes `older`, and a new run begins. No sum
+//! is kept for longer than two windows, so rounding errors do not accumulate.
 //!
-//! Where the material changes, or a sample is far out, large residuals must not be summed with small ones: taken off again
-//! they would leave their rounding behind, and powers of a residual about an estimate that is far away cancel. So
+//! Where the material changes, or at an outlier, large residuals must not be summed with small ones: when they are subtracted
+//! again their rounding error stays, and powers of a residual about a distant estimate cancel. Therefore
 //!
-//! - a sample that is far out of what `next` holds ends that run, which joins the older, and so does the first sample that
-//!   is back;
-//! - now and then `next` looks at itself. Where its least-squares solution explains most of its residual, its sums are
-//!   built again about that, from the ring, one older sample more at each update, and then take their place.
+//! - an outlier ends the `newer` run, which is merged into `older`, and so does the first sample that is no outlier again;
+//! - at intervals the centre of `newer` is checked. Where its least-squares solution explains most of the residual, its sums are
+//!   rebuilt about that solution from the ring, one older sample at each update, and then replaced.
 
 use crate::block::config::BlockConfig;
 use crate::block::second_order::Moments;
@@ -50,42 +49,42 @@ impl<M: Moments> Run<M> {
     }
 }
 
-/// Square of the multiple of the rms residual beyond which a sample is far out: 6, which Gaussian noise does not reach. What is
+/// Square of the multiple of the rms residual beyond which a sample is an outlier: 6, which Gaussian noise does not reach. What is
 /// nearer costs the third power of 6 of a last digit at most.
 const OUTLIER_RATIO_SQ: f32 = 36.0;
 
-/// Samples from which on their rms means something.
+/// Samples that an rms needs.
 const MIN_SAMPLES: u16 = 8;
 
-/// Samples between two looks of `next` at itself: enough for two unknowns, few enough to notice a change early.
+/// Samples between two checks of the centre: enough for two unknowns, few enough to notice a change early.
 const RECENTRE_INTERVAL: u16 = 32;
 
-/// Share of the residual's energy above which another estimate is so much better_centre than the centre that it takes its place:
+/// Share of the residual energy that the least-squares solution has to explain to become the new centre:
 /// the residual about the centre is then twice that about the other.
 const MIN_EXPLAINED_FRACTION: f32 = 0.75;
 
-/// What is remembered of a window by a law that sums moments `M`.
+/// The sums `M` of a window, updated sample by sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CompensatedSums<M> {
     older: Run<M>,
     newer: Run<M>,
-    /// What is to take the place of `next`, once it holds the same samples.
+    /// Replaces `newer` once it holds the same samples.
     rebuilt: Run<M>,
-    /// Leaves the window newer.
+    /// The sample that leaves the window next.
     oldest: Observation,
     /// Mean square residual of the run before; zero where there was none.
     level: f32,
     /// Samples in the window.
     fill: u16,
-    /// Samples in `next`.
+    /// Samples in `newer`.
     covered: u16,
     /// Samples in `rebuilt`.
     caught_up: u16,
-    /// Updates since the older was last empty.
+    /// Updates since `older` was last empty.
     age: u16,
-    /// Updates since the last look.
+    /// Updates since the last check of the centre.
     since: u16,
-    /// `next` began with a sample that was far out.
+    /// `newer` began with an outlier.
     in_outliers: bool,
     /// `rebuilt` is being built.
     rebuilding: bool,
@@ -110,7 +109,7 @@ impl<M: Moments> CompensatedSums<M> {
         (self.covered, self.since, self.rebuilding) = (0, 0, false);
     }
 
-    /// The run so far joins the older where `newest` is far out of it, or is the first that is not.
+    /// Merges the run into `older` where `newest` is an outlier of it, or the first sample that is none again.
     fn split_at_outlier(&mut self, newest: &Observation) {
         let (e, sums) = (newest.residual(self.newer.centre), self.newer.moments.second());
         let square = e * e;
@@ -125,7 +124,7 @@ impl<M: Moments> CompensatedSums<M> {
         }
     }
 
-    /// The run so far joins the older; the sample that comes is the `first` that is out, another, or the first that is `back`.
+    /// Merges the run into `older`; the next sample is the `first` outlier, a further one, or the first that is `back`.
     #[cold]
     #[inline(never)]
     fn split(&mut self, first: bool, back: bool) {
@@ -161,7 +160,7 @@ impl<M: Moments> CompensatedSums<M> {
         }
     }
 
-    /// The older is empty, and the run is the window.
+    /// `older` is empty, and the run is the window.
     #[inline(never)]
     fn swap(&mut self, config: &BlockConfig) {
         self.older = self.newer;
@@ -170,7 +169,7 @@ impl<M: Moments> CompensatedSums<M> {
         self.age = 0;
     }
 
-    /// Updates from one look to the newer.
+    /// Updates from one check of the centre to the next.
     fn recentre_interval(&self, config: &BlockConfig) -> u16 {
         if self.fill < RECENTRE_INTERVAL {
             MIN_SAMPLES / 2

@@ -1,4 +1,4 @@
-//! Block least mean fourth as it is printed: the window summed anew, twice, for each line search.
+//! Block least mean fourth as it is printed: the window summed twice for each line search.
 
 use crate::block::config::BlockConfig;
 use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
@@ -40,7 +40,7 @@ pub struct LineSearch {
     pub length: f32,
 }
 
-/// SecondOrderSums of the residual's third power and of what weighs it, residuals over the largest.
+/// Sums of the third power of the residual with its weights, residuals scaled by the largest.
 #[derive(Debug, Clone, Copy, Default)]
 struct Powers {
     largest: f32,
@@ -68,7 +68,7 @@ impl BlockLeastMeanFourth {
     }
 }
 
-/// Below this scaled `sum p^4` no observation says anything along the direction.
+/// Scaled `sum p^4` below which the direction is not excited.
 const MIN_QUARTIC: f32 = 1e-22;
 
 /// The exact line search along the unit vector `u`; `None` where nothing is excited along it.

@@ -1,4 +1,4 @@
-//! Moments of fourth order, and what follows from them at any estimate.
+//! Sums of fourth order over a window: value, gradient and curvature of `sum e^4` at any estimate.
 
 use crate::block::second_order::{Moments, SecondOrderSums, kahan_add};
 use crate::contact::{Impedance, Observation};

@@ -1,4 +1,4 @@
-//! What the block laws share: settings, state, and the outcome of an update.
+//! What the block laws share: state, and the outcome of an update.
 
 use crate::block::config::BlockConfig;
 use crate::block::second_order::Moments;
@@ -11,7 +11,7 @@ use crate::quality::Step;
 use crate::update_law::UpdateLaw;
 use crate::window::Recent;
 
-/// State of a block law: the estimate, and what is remembered of the window beside its samples.
+/// State of a block law: the estimate, and the sums of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BlockState<M> {
     /// K and B, internal units.
@@ -19,7 +19,7 @@ pub struct BlockState<M> {
     pub(crate) memory: M,
 }
 
-/// What a law makes of the window's sums.
+/// The step of a criterion.
 #[derive(Debug, Clone, Copy)]
 pub struct CriterionStep {
     /// Where the estimate is to go.
@@ -30,7 +30,7 @@ pub struct CriterionStep {
     pub flags: Flags,
 }
 
-/// A window as a criterion sees it.
+/// The window with its sums, as a criterion needs them.
 #[derive(Debug, Clone, Copy)]
 pub struct WindowView<'a, M: WindowSums> {
     pub config: &'a BlockConfig,
@@ -70,16 +70,16 @@ impl<'a, M: WindowSums> WindowView<'a, M> {
     }
 }
 
-/// What one block law has of its own.
+/// The criterion that a block law minimises.
 pub trait Criterion {
-    /// What it remembers of the window.
+    /// How it keeps the sums of the window.
     type WindowSums: WindowSums;
 
     /// The move from the estimate of `view`.
     fn advance(&self, view: &WindowView<'_, Self::WindowSums>) -> CriterionStep;
 }
 
-/// A law on a sliding window: what all of them share, about the criterion of each.
+/// A law on a sliding window, for a given criterion.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockLaw<C> {
     pub(crate) config: BlockConfig,
@@ -87,8 +87,8 @@ pub struct BlockLaw<C> {
 }
 
 impl<C: Criterion> BlockLaw<C> {
-    /// Moves the estimate by the newest of `recent`, and nothing else: no interval, fill or excitation. The state is that of
-    /// [`UpdateLaw::update`], and either may follow on the other. Returns the innovation, in internal units of force.
+    /// Updates the estimate with the newest of `recent`, without interval, fill or excitation. The state is that of
+    /// [`UpdateLaw::update`], and both may be mixed. Returns the innovation, in internal units of force.
     pub fn update_estimate(&self, state: &mut BlockState<C::WindowSums>, recent: Recent<'_>) -> f32 {
         let recent = recent.last(self.window());
         let innovation = recent.newest().unwrap_or_default().residual(state.estimate);

@@ -46,7 +46,7 @@ impl Direction {
 /// about the centre `l = sum p^3 e / A`, where the quadratic term vanishes.
 ///
 /// J is a polynomial in theta whose fifteen coefficients are kept as running sums, so an update costs the same at any
-/// window. FourthOrderSums powers are those of internal units ([`crate::Units`]): a residual within 1e-8 to 1e8 of them neither
+/// window. Fourth powers are those of internal units ([`crate::Units`]): a residual within 1e-8 to 1e8 of them neither
 /// underflows nor overflows.
 ///
 /// The interval is that of least mean fourth at its minimum, `E e^6 / (9 (E e^2)^2)` in place of the variance (with the sixth
@@ -73,8 +73,8 @@ impl BlockLeastMeanFourth {
     }
 }
 
-/// Along which to search, its larger entry of size one; `None` where there is no gradient. Where B cannot be told, Newton's
-/// direction is that of K alone.
+/// The direction of search, scaled so that its larger entry has magnitude one; `None` where the gradient is zero. Where B is not identifiable, Newton's
+/// direction is along K alone.
 pub(crate) fn search_direction<M: WindowSums>(
     direction: Direction,
     view: &WindowView<'_, M>,
@@ -96,8 +96,8 @@ pub(crate) fn search_direction<M: WindowSums>(
     Some(Impedance { stiffness: d.stiffness / largest, damping: d.damping / largest })
 }
 
-/// Where the quadratic term takes more than this share of the curvature, its centre is looked at from nearby: with less,
-/// the difference of the two loses no more than a digit of a bit.
+/// Where the quadratic term is more than this share of the curvature, the sums are shifted to the centre of the cubic before the
+/// difference is formed, because it would lose digits by cancellation.
 const MAX_CENTRE_FRACTION: f32 = 0.5;
 
 /// How far to go along `u`, in its length; `None` where nothing is excited along it.

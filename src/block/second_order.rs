@@ -4,7 +4,7 @@ use crate::contact::{Impedance, Observation};
 use crate::math::sym2::Sym2;
 use crate::window::Recent;
 
-/// SecondOrderSums of regressors and of the residual `e = F - phi' c` of an estimate c. Taken about an estimate that is near, they
+/// Sums of regressors and of the residual `e = F - phi' c` of an estimate c. Taken about an estimate that is near, they
 /// lose less to rounding than sums of raw force.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SecondOrderSums {
@@ -89,14 +89,14 @@ fn plus(a: Impedance, b: Impedance) -> Impedance {
     Impedance { stiffness: a.stiffness + b.stiffness, damping: a.damping + b.damping }
 }
 
-/// SecondOrderSums over samples that can be added, taken off, and seen from another estimate.
+/// SecondOrderSums over samples that can be added, subtracted, and shifted to residuals about another estimate.
 pub trait Moments: Copy + Default + core::fmt::Debug {
     /// Of one sample with residual `e`.
     fn of(o: &Observation, e: f32) -> Self;
     /// The samples of both, which are summed about the same estimate.
     #[must_use]
     fn with(&self, other: &Self) -> Self;
-    /// Adds `sign` times `terms` by Kahan's summation: `lost` is what rounding has kept out so far.
+    /// Adds `sign` times `terms` by Kahan's summation; `lost` is its running compensation.
     fn kahan_add(&mut self, lost: &mut Self, terms: &Self, sign: f32);
     /// The same samples about an estimate that is `shift` further.
     #[must_use]

@@ -1,7 +1,7 @@
-//! The window's sums at a cost that does not depend on its length, and from which nothing is ever taken off again.
+//! The sums of a sliding window at constant cost, without subtraction.
 //!
-//! A sum that samples are taken off keeps the rounding of what has left. Here a sum only grows, and is dropped as a whole: the
-//! queue of two stacks (Tangwongsan, Hirzel, Schneider, Low-Latency Sliding-Window Aggregation in Worst-Case Constant Time,
+//! A sum from which samples are subtracted keeps their rounding error. Here samples are only added, and a sum is discarded as a whole: the
+//! two-stack queue (Tangwongsan, Hirzel, Schneider, Low-Latency Sliding-Window Aggregation in Worst-Case Constant Time,
 //! 2017), with samples taken in chunks so that it needs neither memory nor time in proportion to the window. From the oldest sample on the window is
 //!
 //! - what is left of the oldest chunk: one of its own suffix sums (`entries`), and less than a group of single samples;
@@ -25,10 +25,10 @@ const MAX_ENTRIES: u32 = 10;
 /// Chunks in a window, at most.
 const MAX_CHUNKS: u32 = 16;
 
-/// The window below which everything is summed anew at every update, which costs less there.
+/// Window below which all samples are summed at every update, which costs less there.
 const MIN_WINDOW: u32 = 16;
 
-/// How a window is divided; all zero where it is not.
+/// Division of a window into chunks and groups; all zero for a short window.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Division {
     window: u32,
@@ -54,7 +54,7 @@ impl Division {
     }
 }
 
-/// What is remembered of a window by a law that sums moments `M`.
+/// The sums `M` of a window, updated sample by sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TwoStackAggregate<M> {
     division: Division,

@@ -1,30 +1,30 @@
-//! What a block law remembers of its window beside the samples themselves.
+//! The interface between a block law and the sums that are kept of its window.
 
 use crate::block::config::BlockConfig;
 use crate::block::second_order::{Moments, SecondOrderSums};
 use crate::contact::Impedance;
 use crate::window::Recent;
 
-/// The sums of a window, and what they were taken about.
+/// The sums of a window, and the estimate that their residuals refer to.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CentredMoments<M> {
     pub centre: Impedance,
     pub moments: M,
 }
 
-/// What is remembered from one update to the next.
+/// Sums of a window, updated sample by sample.
 pub trait WindowSums: Copy + Default + core::fmt::Debug {
-    /// The sums that it tells of.
+    /// The sums.
     type CentredMoments: Moments;
 
     /// Takes in the newest of `recent`, which is the law's own window; `estimate` is the estimate before it.
     fn push(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance);
 
-    /// The window's sums, about `estimate` or whatever near it comes cheaper.
+    /// The window's sums, about `estimate` or a nearby estimate that is cheaper.
     fn centred_moments(&self, recent: Recent<'_>, estimate: Impedance) -> CentredMoments<Self::CentredMoments>;
 }
 
-/// Nothing is remembered: the window is summed anew at every update.
+/// Keeps nothing: the window is summed at every update.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DirectSums;
 

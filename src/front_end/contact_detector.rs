@@ -4,9 +4,9 @@ use crate::error::{ConfigError, require, require_not_negative};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
-/// Thresholds with hysteresis.
+/// Thresholds of force with hysteresis.
 ///
-/// "Force is not zero" alone marks most of free space as contact, for a sensor is never silent: contact begins with a
+/// A threshold of zero would mark most of free space as contact, because sensors are noisy: contact begins with a
 /// force above `on_force` at a penetration of at least zero, and ends after `off_samples` samples in a row that are
 /// below `off_force` or outside the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +20,7 @@ pub struct ContactDetectorConfig {
     pub off_samples: u16,
 }
 
-/// The contact, and for how long it has been slipping away.
+/// Whether there is contact, and for how many samples in a row the thresholds say otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactDetectorState {
     closed: bool,

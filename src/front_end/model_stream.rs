@@ -47,7 +47,7 @@ pub struct ModelStream {
     columns: [LowPassState; MAX_PARAMETERS],
     force: LowPassState,
     previous: Option<PreviousSample>,
-    /// The last row previous the filters, and the rate of the tool itself, where there are any.
+    /// The latest unfiltered row, and the rate of the tool itself, where there are any.
     unfiltered: Option<UnfilteredRow>,
     filters_empty: bool,
 }

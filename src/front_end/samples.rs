@@ -9,16 +9,16 @@ use crate::math::larger;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
-/// How the rate of penetration is had from the position.
+/// How the rate of penetration is computed from the position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub enum Velocity {
-    /// As the paper: the difference of the position, low-passed; position and force stay unfiltered_row. The filter delays the
+    /// As the paper: the difference of the position, low-passed; position and force are not filtered. The filter delays the
     /// rate against the force, which biases B: measured on K = 300 N/m with a cut-off of 20 Hz, by -5 % at a motion of
     /// 5 Hz, -26 % at 10 Hz, -60 % at 15 Hz.
     Paper,
     /// Penetration, rate and force pass the same filter, so the filter cancels from `F = K x + B v`. Penetration and
-    /// force enter as the mean of two samples, for the difference belongs to the instant half-displacement between them.
+    /// force enter as the mean of two samples, for the difference belongs to the instant half-way between them.
     #[default]
     Matched,
 }
@@ -33,9 +33,9 @@ pub struct FrontEndConfig {
     pub surface: f32,
     /// Cut-off of the low-pass, in Hz, at most 0.4 over `period`.
     pub cutoff: f32,
-    /// How the rate is had.
+    /// How the rate is computed.
     pub velocity: Velocity,
-    /// Glued or clamped: force both ways, always in contact, and the contact_detector is not asked.
+    /// Glued or clamped: force both ways, always in contact, so contact is not detected.
     pub bilateral: bool,
     /// Contact thresholds.
     pub contact_detector: ContactDetectorConfig,
@@ -93,7 +93,7 @@ pub struct Reading {
 pub struct FrontEnd {
     config: FrontEndConfig,
     nominal: LowPass,
-    /// `config.contact_detector` in internal units.
+    /// The contact thresholds in internal units.
     contact_detector: ContactDetectorConfig,
     /// Factors from SI to internal: of position, of force, and of internal penetration over seconds.
     to_penetration: f32,
@@ -111,7 +111,7 @@ struct PreviousSample {
     force: f32,
 }
 
-/// Filters, contact_detector and the sample previous.
+/// State of the filters and of the contact detection, and the previous sample.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FrontEndState {
     previous: Option<PreviousSample>,
@@ -177,7 +177,7 @@ impl FrontEnd {
     /// Takes one sample.
     ///
     /// # Errors
-    /// Why it was rejected; then the state is as previous, but for the clock.
+    /// Why it was rejected; then only the elapsed time is taken over.
     pub fn update(&self, state: &mut FrontEndState, sample: Sample) -> Result<Reading, Rejection> {
         let (penetration, force) = self.validated(&sample).inspect_err(|_| {
             if sample.elapsed.is_finite() && sample.elapsed > 0.0 {
@@ -260,7 +260,7 @@ impl FrontEnd {
 
 impl FrontEndState {
     /// Filters at rest in the first row whose rate is known. The model holds between their states from then on, so a tool
-    /// that is on its displacement makes no transient; what stays for a settling time is the noise of this one row.
+    /// that is already moving causes no transient; what stays for a settling time is the noise of this one row.
     fn start_filters(&mut self, row: &Observation) {
         self.penetration = LowPassState::at_rest(row.penetration);
         self.rate = LowPassState::at_rest(row.rate);

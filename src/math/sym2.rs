@@ -91,7 +91,7 @@ impl Sym2 {
         image.stiffness * y.stiffness + image.damping * y.damping
     }
 
-    /// Whether all three entries are finite, and their sum: one look in the place of three.
+    /// Whether all three entries and their sum are finite: one test instead of three.
     pub fn is_finite(self) -> bool {
         (self.xx + self.xv + self.vv).is_finite()
     }

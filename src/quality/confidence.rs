@@ -1,4 +1,4 @@
-//! How sure an estimate is.
+//! The parts of the uncertainty of an estimate.
 
 use crate::contact::Impedance;
 use crate::math::sym2::Sym2;
@@ -14,8 +14,8 @@ pub struct Confidence {
     pub noise: Sym2,
     /// The same for white noise of variance one.
     pub noise_gain: Sym2,
-    /// How far the estimate still is from what it moves towards: what is left of the start in a recursive law, the way
-    /// still to go of a descent.
+    /// Bias that is left from the initial estimate of a recursive law, or the distance that an iterative descent still has to its
+    /// minimum.
     pub startup_bias: Impedance,
     /// Change of the estimate for a constant force of one unit.
     pub offset_gain: Impedance,
@@ -24,7 +24,7 @@ pub struct Confidence {
 }
 
 impl Confidence {
-    /// Nothing is known.
+    /// No information: infinite variance.
     pub const NONE: Self = Self {
         noise: Sym2::UNKNOWN,
         noise_gain: Sym2::UNKNOWN,

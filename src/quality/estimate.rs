@@ -1,4 +1,4 @@
-//! What the user gets: two numbers, how sure they are, and what to beware of.
+//! The estimate with its intervals and flags, in SI.
 
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require_not_negative};
@@ -22,19 +22,19 @@ pub struct Estimate {
     pub fill: f32,
     /// Independence of penetration and rate, 0 to 1.
     pub excitation: f32,
-    /// What to beware of.
+    /// Conditions that limit the validity of the estimate.
     pub flags: Flags,
 }
 
 impl Estimate {
-    /// Something is touched and nothing is known of it.
+    /// In contact, with no information yet.
     pub const UNKNOWN: Self = Self {
         half_width: Impedance { stiffness: f32::INFINITY, damping: f32::INFINITY },
         flags: Flags::HELD,
         ..Self::NO_CONTACT
     };
 
-    /// Nothing is touched.
+    /// Out of contact.
     pub const NO_CONTACT: Self = Self {
         impedance: Impedance::ZERO,
         half_width: Impedance::ZERO,
@@ -45,7 +45,7 @@ impl Estimate {
     };
 }
 
-/// What the sensors cannot resolve, in SI; zero where it is not known.
+/// Resolution and noise of the sensors, in SI; zero where unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct SensorResolution {
@@ -63,7 +63,7 @@ impl SensorResolution {
     }
 }
 
-/// Turns what a law found into an [`Estimate`]: internal to SI, confidence to intervals.
+/// Converts the outcome of a law into an [`Estimate`]: internal units to SI, confidence to 95 % intervals.
 ///
 /// The half-width is `sqrt(t^2 variance + (0.95 offset_gain K * half a count)^2) + |startup_bias|`, with the parts of
 /// [`crate::Confidence`]: the surface lies anywhere within a count, so 95 % of its places lie within 0.95 of half a count, and
@@ -87,10 +87,10 @@ impl IntervalEstimator {
     /// Share of the value above which an interval is flagged.
     const MAX_RELATIVE_HALF_WIDTH: f32 = 0.3;
 
-    /// Share of half a count within which 95 % of the surfaces lie that are anywhere in it.
+    /// Share of half a count that contains 95 % of the possible positions of the surface.
     const SURFACE_COVERAGE: f32 = 0.95;
 
-    /// Degrees of freedom that a force noise known beforehand is trusted for.
+    /// Degrees of freedom attributed to a force noise that is known beforehand.
     const KNOWN_NOISE_FREEDOM: f32 = 10.0;
 
     pub(crate) fn new(front_end: &FrontEnd, sensors: SensorResolution) -> Self {

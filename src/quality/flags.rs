@@ -1,7 +1,7 @@
-//! What to beware of.
+//! Conditions that limit the validity of an estimate.
 
 bitflags::bitflags! {
-    /// What was out of the ordinary about an estimate. Empty on a good one.
+    /// Conditions that limit the validity of an estimate; empty on a good one.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub struct Flags: u16 {
         /// The tool touches nothing: K and B read zero.
@@ -28,7 +28,7 @@ bitflags::bitflags! {
         const LITTLE_MOVEMENT = 1 << 10;
         /// The covariance was found unsound and set back to its start.
         const RESET = 1 << 11;
-        /// The material was found to have changed at this sample: what was learnt before it counts no more.
+        /// The material was found to have changed at this sample: earlier samples no longer count.
         const CHANGED = 1 << 12;
     }
 }

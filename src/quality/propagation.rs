@@ -1,4 +1,4 @@
-//! How sure a recursive law is, carried along from update to update.
+//! Propagation of the uncertainty of a recursive law from update to update.
 
 use crate::contact::{Impedance, Observation};
 use crate::math::smaller;
@@ -7,7 +7,7 @@ use crate::quality::confidence::Confidence;
 use crate::quality::flags::Flags;
 use crate::quality::step::Step;
 
-/// Forgetting factor of what tells fill and excitation in a law that has none of its own: a transition of 300 samples.
+/// Forgetting factor for fill and excitation in a law that has none of its own: a transition of 300 samples.
 pub(crate) const DEFAULT_FORGETTING: f32 = 1.0 - 1.0 / 300.0;
 
 /// Propagates the uncertainty of any law of the form `theta += gain * innovation`.
@@ -16,8 +16,8 @@ pub(crate) const DEFAULT_FORGETTING: f32 = 1.0 - 1.0 / 300.0;
 /// the error at the start is `M error(0)` with M the product of these maps, and its variance from noise (each sample's own,
 /// so a stretch that fits badly is remembered for as long as the estimate rests on it) and its response to a constant
 /// offset follow exactly: for least squares with and without forgetting, self-perturbation or resets, and for a
-/// constant gain alike. M also tells the error at the start, from how far the estimate has come:
-/// `(I - M) error(0) = start - estimate`. No prior knowledge of the contact is asked for.
+/// constant gain alike. M also gives the initial error from how far the estimate has moved:
+/// `(I - M) error(0) = start - estimate`. No prior knowledge of the contact is needed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UncertaintyPropagation {
     start: Impedance,
@@ -85,7 +85,7 @@ impl UncertaintyPropagation {
     #[inline(always)]
     pub fn confidence(&self, estimate: Impedance) -> Confidence {
         let [k, b] = self.transition;
-        // The error at the start is told from a noisy estimate, over I - M: so is its startup_bias.
+        // The initial error is itself estimated from noisy data, divided by I - M: the bias that remains inherits that factor.
         let (k_told, b_told) = (1.0 / (1.0 - k.stiffness), 1.0 / (1.0 - b.damping));
         Confidence {
             noise: self.noise.stretched(k_told, b_told),

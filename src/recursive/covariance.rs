@@ -1,4 +1,4 @@
-//! The covariance of recursive least squares, factored so that it cannot lose its sign.
+//! The covariance of recursive least squares, factored so that it stays positive definite.
 
 use crate::contact::{Impedance, Observation};
 use crate::math::smaller;
@@ -49,7 +49,7 @@ impl Covariance {
         gain
     }
 
-    /// Adds `perturbation` times the identity, `perturbation` >= 0.
+    /// Adds `perturbation` times the identity; it must not be negative.
     pub fn inflate(&mut self, perturbation: f32) {
         let d2 = self.d2 + perturbation;
         let share = self.d2 / d2;
@@ -58,7 +58,7 @@ impl Covariance {
         self.d2 = d2;
     }
 
-    /// Keeps both factors at or below `limit`; whether one had to be cut.
+    /// Keeps both factors at or below `limit`; whether one was reduced.
     pub fn limit(&mut self, limit: f32) -> bool {
         self.limit_each(Impedance { stiffness: limit, damping: limit })
     }
@@ -88,8 +88,8 @@ impl Covariance {
         self.d1 + self.d2 + self.u
     }
 
-    /// Whether it is plainly a covariance within `limit`, if it is finite: of positive factors with a product that is no less.
-    /// Where this is false, [`Self::is_sound`] and [`Self::limit`] tell.
+    /// A sufficient test, cheaper than [`Self::is_sound`] and [`Self::limit`], that a finite covariance is positive definite and within
+    /// `limit`: the sum of the factors is at most `limit` and their product is positive.
     #[inline(always)]
     pub(crate) fn is_plain(&self, limit: f32) -> bool {
         self.d1 + self.d2 <= limit && self.d1 * self.d2 > 0.0

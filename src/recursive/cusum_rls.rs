@@ -18,11 +18,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct CusumRlsConfig {
-    /// lambda, above 0.5 and at most 1: a long memory, for what jumps is seen to by the detector and this by what drifts.
+    /// lambda, above 0.5 and at most 1: a long memory suffices, because the detector handles jumps and this only drift.
     pub forgetting_factor: f32,
-    /// What is believed at the first sample, about zero, and after a change, about the estimate.
+    /// Prior about zero at the first sample, and about the estimate after a change.
     pub prior: Prior,
-    /// When to begin again.
+    /// When the covariance is reset.
     pub change: ChangeConfig,
 }
 
@@ -36,7 +36,7 @@ impl Default for CusumRlsConfig {
 /// Exponentially weighted least squares whose covariance goes back to its prior at a change that a cumulative sum of the
 /// innovation has found: quick where the material jumps, quiet where it does not.
 ///
-/// **The one to take** where K may change: on the paper's bench behind a matched filter of 40 Hz it has K within 10 % in less than
+/// **The recommended law** where K may change: on the paper's bench behind a matched filter of 40 Hz it has K within 10 % in less than
 /// 30 ms of an onset, follows a jump within 45 ms, and scatters by less than 0.1 % of K in between. It keeps no window (under 150 bytes
 /// of state), costs a third less than block least squares, and its intervals begin anew with it. `docs/paper.md` has it beside
 /// the others. Where the material drifts without rest, or the model fits badly, [`crate::BlockLeastSquares`] of a short window
@@ -88,7 +88,7 @@ impl CusumRls {
         Covariance::diagonal(self.variances.stiffness, self.variances.damping)
     }
 
-    /// Begins again where the innovation says so, then takes in `o`.
+    /// Resets the covariance where a change is detected, then updates with `o`.
     fn advance(&self, state: &mut CusumRlsState, o: &Observation) -> (f32, Impedance, Flags) {
         let innovation = o.residual(state.recursion.estimate);
         let changed = self.config.change.update(&mut state.change, innovation);
@@ -104,7 +104,7 @@ impl CusumRls {
         (innovation, gain, flags)
     }
 
-    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::update_estimate`].
+    /// Updates the estimate and its covariance by one observation without its uncertainty: as [`crate::Ewrls::update_estimate`].
     pub fn update_estimate(&self, state: &mut CusumRlsState, o: &Observation) -> f32 {
         self.advance(state, o).0
     }
@@ -129,7 +129,7 @@ impl UpdateLaw for CusumRls {
         let o = recent.newest().unwrap_or_default();
         let (innovation, gain, flags) = self.advance(state, &o);
         let step = state.recursion.step(&o, gain, innovation, self.config.forgetting_factor, flags);
-        // Numbers at the end of the range leave nothing to tell.
+        // Beyond the range of single precision there is no confidence.
         let c = &step.confidence;
         if (c.noise.xx + c.noise_gain.xx).is_nan() { Step { confidence: Confidence::NONE, ..step } } else { step }
     }

@@ -1,4 +1,4 @@
-//! Recursive least squares that forgets only where the newest sample says something new.
+//! Recursive least squares that forgets only in the direction of the newest regressor.
 
 use crate::contact::{Impedance, Observation};
 use crate::error::{ConfigError, require};
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 pub struct DirectionalRlsConfig {
     /// lambda, above 0.5 and at most 1: what is kept of the information along the newest regressor.
     pub forgetting_factor: f32,
-    /// What is believed before the first sample.
+    /// Prior of the first sample.
     pub prior: Prior,
 }
 
@@ -126,5 +126,5 @@ impl UpdateLaw for DirectionalRls {
     }
 }
 
-/// Forgetting factor, at most, of what tells fill and excitation.
+/// Largest forgetting factor for fill and excitation.
 const MAX_FORGETTING: f32 = 0.999;

@@ -65,9 +65,9 @@ impl Ewrls {
 }
 
 impl Ewrls {
-    /// Moves the estimate and its covariance by one observation, and nothing else: no interval, fill or excitation, at
-    /// less than a fifth of the instructions of [`UpdateLaw::update`]. A state that was moved by it has no intervals to tell until
-    /// it is forgotten. Returns the innovation, in internal units of force.
+    /// Updates the estimate and its covariance by one observation, without interval, fill or excitation, at less than a fifth of
+    /// the instructions of [`UpdateLaw::update`]. The intervals of a state updated this way are not valid until
+    /// [`UpdateLaw::reset_memory`]. Returns the innovation, in internal units of force.
     pub fn update_estimate(&self, state: &mut RecursiveState, o: &Observation) -> f32 {
         let innovation = o.residual(state.estimate);
         let mut covariance = state.covariance;

@@ -36,7 +36,7 @@ pub struct ParameterState<const P: usize> {
     diagonal: [f32; P],
     upper: [[f32; P]; P],
     change: ChangeState,
-    /// SecondOrderSums of innovation times residual, of the weights, and of their squares.
+    /// Sums of innovation times residual, of the weights, and of their squares.
     square: f32,
     weight: f32,
     weight_squared: f32,

@@ -22,7 +22,7 @@ pub struct SprlsConfig {
     /// beta >= 0: size of one step of the perturbation, internal units (the paper's beta, 100).
     pub perturbation_gain: f32,
     /// gamma >= 0: steps of the perturbation per squared residual, internal units (the paper's gamma, 2 per N^2). Residuals
-    /// below sqrt(0.5 / gamma) do not perturbation.
+    /// below sqrt(0.5 / gamma) do not perturb.
     pub perturbation_sensitivity: f32,
     /// P(0) = `initial_covariance` * I, above 0, at most 1e8.
     pub initial_covariance: f32,
@@ -42,7 +42,7 @@ impl Default for SprlsConfig {
     }
 }
 
-/// Recursive least squares without forgetting whose covariance is kicked by its own residual:
+/// Recursive least squares without forgetting whose covariance is perturbed by its own residual:
 ///
 /// ```text
 /// P = P - L phi' P + beta * NINT(gamma e'^2) I
@@ -85,14 +85,14 @@ impl Sprls {
 }
 
 impl Sprls {
-    /// Whether `innovation` may perturbation: less than half a step is none. Not a number may.
+    /// Whether `innovation` perturbs: less than half a step does not; a NaN does.
     #[inline(always)]
     fn perturbs(&self, innovation: f32) -> bool {
         let level = self.config.perturbation_sensitivity * innovation * innovation;
         level.partial_cmp(&0.499_999) != Some(Ordering::Less)
     }
 
-    /// The perturbation of the innovation before, where there is one.
+    /// Adds the perturbation of the previous innovation, if any.
     fn perturb(&self, covariance: &mut Covariance, innovation: f32) {
         let perturbation = self.perturbation(innovation);
         if perturbation > 0.0 {
@@ -106,7 +106,7 @@ impl Sprls {
 }
 
 impl Sprls {
-    /// Moves the estimate and its covariance by one observation, and nothing else: as [`crate::Ewrls::update_estimate`].
+    /// Updates the estimate and its covariance by one observation without its uncertainty: as [`crate::Ewrls::update_estimate`].
     pub fn update_estimate(&self, state: &mut SprlsState, o: &Observation) -> f32 {
         let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
@@ -120,7 +120,7 @@ impl Sprls {
         }
     }
 
-    /// The same where the covariance is kicked, has to be limited, or begins anew.
+    /// The same where the covariance is perturbed, has to be limited, or is reset.
     #[cold]
     fn update_estimate_perturbed(&self, state: &mut SprlsState, o: &Observation) -> f32 {
         let innovation = o.residual(state.recursion.estimate);

@@ -8,7 +8,7 @@ use crate::quality::Step;
 use crate::quality::UncertaintyPropagation;
 use crate::recursive::covariance::Covariance;
 
-/// Forgetting factor, at most, of what tells fill and excitation: a sum in single precision over a memory of a thousand
+/// Largest forgetting factor for fill and excitation: a sum in single precision over a memory of a thousand
 /// samples is exact to 1e-4, and one that never forgets would stop growing.
 const MAX_FORGETTING: f32 = 0.999;
 
@@ -23,11 +23,11 @@ pub struct RecursiveState {
 }
 
 impl RecursiveState {
-    /// The estimate without what is left in it of the zero that it started from; `None` until both parameters have been told.
+    /// The estimate without the bias that is left from its initial value of zero; `None` until both parameters can be estimated.
     ///
-    /// A small P(0) draws a recursion to its start for seconds. How much of the start is still in it is known, for its gains are:
-    /// `M (I - M)^-1 (start - estimate)` ([`UncertaintyPropagation`]). Taken off, what is left is the weighted least squares of the samples
-    /// alone. The state and its innovations stay as they are, so this can be asked for or left at any sample.
+    /// A small P(0) biases a recursion towards its initial value for seconds. That bias follows from the gains:
+    /// `M (I - M)^-1 (start - estimate)` ([`UncertaintyPropagation`]). Without it the estimate is the weighted least-squares solution of the samples
+    /// alone. The state is not changed.
     pub fn without_start(&self) -> Option<Impedance> {
         let told = self.estimate.moved(-1.0, self.uncertainty.confidence(self.estimate).startup_bias);
         told.is_finite().then_some(told)
@@ -38,7 +38,7 @@ impl RecursiveState {
         Self::with_prior(Covariance::identity(initial_covariance), estimate)
     }
 
-    /// With the estimate at `estimate`, believed as far as `covariance` says.
+    /// With the prior mean `estimate` and the prior covariance `covariance`.
     pub(crate) fn with_prior(covariance: Covariance, estimate: Impedance) -> Self {
         Self { estimate, covariance, uncertainty: UncertaintyPropagation::new(estimate) }
     }
@@ -94,7 +94,7 @@ impl RecursiveState {
         plain
     }
 
-    /// The outcome, told with the memory that `forgetting` gives.
+    /// The outcome of an update; `forgetting` sets over how many samples fill and excitation are measured.
     #[inline(always)]
     pub(crate) fn step(
         &mut self,

@@ -3,6 +3,7 @@
 mod calibration;
 mod effort;
 mod faults;
+mod limits;
 mod link;
 mod sensors;
 mod weather;

@@ -10,19 +10,19 @@ use palpate_drive::link::{Command, CountersMessage, FEED, Message, Request, Requ
 use palpate_drive::{INPUT_BYTES, Input};
 
 use super::port::Port;
-use super::{About, in_words};
+use super::{DriveInfo, in_words};
 
 /// How long an answer may take, and how often a request is sent. A drive answers within milliseconds; an emulator on a busy host
 /// may take seconds.
-const ANSWER: Duration = Duration::from_secs(5);
-const TRIES: u32 = 3;
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(5);
+const MAX_ATTEMPTS: u32 = 3;
 
 /// How often a drive that may just have been started is called, and for how long.
-const CALL: Duration = Duration::from_millis(200);
-const CALLS: u32 = 50;
+const WAKE_INTERVAL: Duration = Duration::from_millis(200);
+const MAX_WAKE_ATTEMPTS: u32 = 50;
 
 /// What a drive without room is given: some ticks.
-const PAUSE: Duration = Duration::from_millis(5);
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// A drive on a port.
 pub struct Client {
@@ -56,10 +56,10 @@ impl Client {
     /// # Errors
     /// The port is gone, or nobody answers.
     pub fn wake(&mut self) -> Result<()> {
-        for _ in 0..CALLS {
+        for _ in 0..MAX_WAKE_ATTEMPTS {
             let (sent, since) = (self.send(Command::Alive)?, Instant::now());
             let mut awake = false;
-            while !awake && since.elapsed() < CALL {
+            while !awake && since.elapsed() < WAKE_INTERVAL {
                 self.poll(|message| awake |= matches!(message, Message::Answer { number, .. } if number == sent))?;
             }
             if awake {
@@ -118,7 +118,7 @@ impl Client {
                 Message::Answer { number, outcome } if number == sent => answer = Some(outcome),
                 other => take(other),
             })?;
-            if since.elapsed() > ANSWER {
+            if since.elapsed() > ANSWER_TIMEOUT {
                 bail!("the drive does not answer");
             }
         }
@@ -131,11 +131,11 @@ impl Client {
     /// As [`Self::request`].
     pub fn ask(&mut self, command: Command<'_>, mut take: impl FnMut(Message<'_>)) -> Result<RequestOutcome> {
         let mut last = self.request(command, &mut take);
-        for _ in 1..TRIES {
+        for _ in 1..MAX_ATTEMPTS {
             if !matches!(last, Ok(RequestOutcome::NoRoom) | Err(_)) {
                 break;
             }
-            std::thread::sleep(PAUSE);
+            std::thread::sleep(POLL_INTERVAL);
             last = self.request(command, &mut take);
         }
         last
@@ -160,11 +160,11 @@ impl Client {
         self.demand(Command::Stream(Streams { estimates: 0, samples: false }), "silence")
     }
 
-    /// Everything that the drive tells of itself.
+    /// Identity, calibration and settings of the drive.
     ///
     /// # Errors
     /// As [`Self::demand`].
-    pub fn about(&mut self) -> Result<About> {
+    pub fn about(&mut self) -> Result<DriveInfo> {
         let (mut identity, mut calibrated, mut chosen) = (None, None, None);
         for command in [Command::Identify, Command::Calibration, Command::Settings] {
             self.ask(command, |message| match message {
@@ -180,7 +180,7 @@ impl Client {
         let (calibration, scale) = calibrated.context("the drive does not tell its calibration")?;
         let (settings, revision) = chosen.context("the drive does not tell its settings")?;
         let found = Faults::from_bits_retain(found);
-        Ok(About { version, image, chip, emulator, reset, found, calibration, scale, settings, revision })
+        Ok(DriveInfo { version, image, chip, emulator, reset, found, calibration, scale, settings, revision })
     }
 
     /// The drive's counters.
@@ -207,7 +207,7 @@ impl Client {
         match self.request(Command::Feed(&bytes), take)? {
             RequestOutcome::Done => Ok(later),
             RequestOutcome::NoRoom => {
-                std::thread::sleep(PAUSE);
+                std::thread::sleep(POLL_INTERVAL);
                 Ok(inputs)
             }
             other => bail!("the drive refuses what it is fed: {}", in_words(other)),

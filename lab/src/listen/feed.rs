@@ -6,7 +6,7 @@ use crate::recording::Recording;
 use crate::rig::Rig;
 
 /// A sound answer to DIAAGC: loops ready, gain in the middle.
-const SOUND: u16 = 1 << 8 | 0x80;
+const HEALTHY_DIAGNOSTICS: u16 = 1 << 8 | 0x80;
 
 /// One input a row, rounded to the sensors' counts. Depths and forces beyond what a word can hold stop at its ends, and
 /// the drive tells of them.
@@ -28,7 +28,9 @@ fn word(depth: f64, force: f64, calibration: &Calibration, scale: &Scale) -> Inp
     let depth = (depth / f64::from(scale.position)).round() as i32;
     let code = (force / f64::from(scale.force) + f64::from(scale.zero)).round() as i32 + 0x8000;
     let (angle, diagnostics) = match calibration.position_sensor {
-        PositionSensor::As5047p => (as5047p::with_parity(calibration.angle_of(depth)), as5047p::with_parity(SOUND)),
+        PositionSensor::As5047p => {
+            (as5047p::with_parity(calibration.angle_of(depth)), as5047p::with_parity(HEALTHY_DIAGNOSTICS))
+        }
         PositionSensor::Quadrature => ((depth.wrapping_add(calibration.surface) & 0xffff) as u16, 0),
     };
     let force = ads8681::word(code.clamp(0, 0xffff) as u16, calibration.range);

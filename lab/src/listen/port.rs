@@ -12,7 +12,7 @@ pub trait Port: Read + Write + Send {}
 impl<T: Read + Write + Send> Port for T {}
 
 /// How long a read waits for a byte.
-pub const PATIENCE: Duration = Duration::from_millis(5);
+pub const READ_TIMEOUT: Duration = Duration::from_millis(5);
 
 /// Opens the serial port, or the Unix socket, at `path`.
 ///
@@ -26,11 +26,11 @@ pub fn open(path: &Path, baud: u32) -> Result<Box<dyn Port>, InputError> {
         use std::os::unix::fs::FileTypeExt as _;
         if std::fs::metadata(path).is_ok_and(|found| found.file_type().is_socket()) {
             let socket = std::os::unix::net::UnixStream::connect(path).map_err(|error| fault(error.to_string()))?;
-            socket.set_read_timeout(Some(PATIENCE)).map_err(|error| fault(error.to_string()))?;
+            socket.set_read_timeout(Some(READ_TIMEOUT)).map_err(|error| fault(error.to_string()))?;
             return Ok(Box::new(socket));
         }
     }
     let name = path.to_string_lossy();
-    let port = serialport::new(name.as_ref(), baud).timeout(PATIENCE).open();
+    let port = serialport::new(name.as_ref(), baud).timeout(READ_TIMEOUT).open();
     Ok(Box::new(port.map_err(|error| fault(error.to_string()))?))
 }

@@ -8,7 +8,7 @@ use palpate::Flags;
 use palpate_drive::link::{CountersMessage, EstimateMessage};
 use palpate_drive::{Calibration, Faults, TICK_HZ, Validity};
 
-use super::About;
+use super::DriveInfo;
 
 /// One line that is written over on a terminal, and a line an estimate elsewhere.
 pub struct Screen {
@@ -28,8 +28,8 @@ impl Screen {
     }
 
     /// Shows an estimate.
-    pub fn show(&self, told: &EstimateMessage, _: &Calibration) {
-        let text = estimate(told);
+    pub fn show(&self, message: &EstimateMessage, _: &Calibration) {
+        let text = estimate(message);
         if self.terminal {
             self.line.set_message(text);
             self.line.tick();
@@ -52,17 +52,17 @@ impl Default for Screen {
 
 /// An estimate in a line.
 #[must_use]
-pub fn estimate(told: &EstimateMessage) -> String {
-    let seconds = f64::from(told.tick) / f64::from(TICK_HZ);
-    let (k, b) = (told.impedance, told.half_width);
-    let what = match told.validity {
+pub fn estimate(message: &EstimateMessage) -> String {
+    let seconds = f64::from(message.tick) / f64::from(TICK_HZ);
+    let (k, b) = (message.impedance, message.half_width);
+    let what = match message.validity {
         Validity::Void => "no estimate".to_owned(),
-        _ if told.flags & Flags::NO_CONTACT.bits() != 0 => "no contact".to_owned(),
+        _ if message.flags & Flags::NO_CONTACT.bits() != 0 => "no contact".to_owned(),
         _ if !b.stiffness.is_finite() => "in contact, nothing known yet".to_owned(),
         _ => format!("K {} N/m, B {} N s/m", interval(k.stiffness, b.stiffness), interval(k.damping, b.damping)),
     };
-    let held = if told.validity == Validity::Held { ", held" } else { "" };
-    let faults = told.faults();
+    let held = if message.validity == Validity::Held { ", held" } else { "" };
+    let faults = message.faults();
     let faults = if faults.is_empty() { String::new() } else { format!("  FAULT {}", names(faults)) };
     format!("{seconds:9.2} s  {what}{held}{faults}")
 }
@@ -79,7 +79,7 @@ pub fn names(faults: Faults) -> String {
 
 /// What a drive is, in a few lines.
 #[must_use]
-pub fn identity(about: &About) -> String {
+pub fn identity(about: &DriveInfo) -> String {
     let [a, b, c] = about.chip;
     let place = if about.emulator { "QEMU".to_owned() } else { format!("chip {a:08x}{b:08x}{c:08x}") };
     let reasons = ["", "brown-out", "pin", "power-on", "software", "watchdog", "window watchdog", "low power"];

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::figures::Figures;
 
 /// The file, in the folder of the sources.
-pub const FILE: &str = "lab/budget.csv";
+pub const BUDGET_FILE: &str = "lab/budget.csv";
 
 /// What one update costs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,7 +26,7 @@ pub struct Cost {
     pub stack_bytes: u32,
     /// Bytes of state and of the samples in its window.
     pub state_bytes: u32,
-    /// Modelled cycles of the worst update, at least: told, and not held, for they follow from the instructions.
+    /// Modelled cycles of the worst update, at least; informative only, because they follow from the instructions.
     pub worst_cycles_lo: u32,
     /// The same, at most.
     pub worst_cycles_hi: u32,
@@ -62,12 +62,12 @@ impl Cost {
 /// The file is none.
 pub fn kept() -> Result<Vec<Cost>> {
     let mut reader = csv::Reader::from_reader(include_str!("../../budget.csv").as_bytes());
-    reader.deserialize().collect::<Result<_, _>>().context(FILE)
+    reader.deserialize().collect::<Result<_, _>>().context(BUDGET_FILE)
 }
 
 /// Where the file stands.
 pub fn path(project: &Path) -> PathBuf {
-    project.join(FILE)
+    project.join(BUDGET_FILE)
 }
 
 /// The file's new text.
@@ -84,7 +84,7 @@ pub fn text(figures: &[Figures]) -> Result<String> {
 
 /// Share by which a figure may differ from its budget: another compiler may allot a register otherwise, the same one gives
 /// the same bits.
-const ROOM: f64 = 0.02;
+const RELATIVE_TOLERANCE: f64 = 0.02;
 
 /// Every figure that is not within its budget, in words; empty where all are.
 ///
@@ -103,7 +103,7 @@ pub fn differences(figures: &[Figures], path: &Path) -> Result<String> {
             continue;
         };
         for ((what, now), (_, then)) in row.numbers().into_iter().zip(allowed.numbers()) {
-            if (now - then).abs() > ROOM * then {
+            if (now - then).abs() > RELATIVE_TOLERANCE * then {
                 let _ = writeln!(words, "{name}: {now} {what}, the budget is {then}");
             }
         }

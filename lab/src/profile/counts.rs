@@ -33,7 +33,7 @@ pub struct Case {
 }
 
 /// Ticks of the clock that one instruction takes: 64 ns at 168 MHz.
-const TICKS: f64 = 10.752;
+const TICKS_PER_INSTRUCTION: f64 = 10.752;
 
 /// Reads both texts. The clock's counts must be the plugin's, pass by pass.
 ///
@@ -85,7 +85,7 @@ fn read_clock(text: &str) -> Result<Vec<Case>> {
             }),
             [ticks, _, stack] => {
                 let ticks: u32 = ticks.parse().with_context(found)?;
-                let instructions = (f64::from(ticks) / TICKS).round() as u32;
+                let instructions = (f64::from(ticks) / TICKS_PER_INSTRUCTION).round() as u32;
                 let pass = Pass { instructions, cycles: [0; 2], stack: stack.parse().with_context(found)? };
                 cases.last_mut().with_context(found)?.passes.push(pass);
             }

@@ -6,7 +6,7 @@
 
 use super::image::Instruction;
 
-/// The rules, as they are told to the reader.
+/// The rules of the cycle model, for the reader.
 pub const RULES: [(&str, &str); 10] = [
     ("data processing, VADD, VSUB, VMUL, VCMP, VCVT, VABS, VNEG, VMOV", "1"),
     ("VMLA, VMLS, VFMA, VFMS and their kin", "3"),

@@ -1,4 +1,4 @@
-//! What is told of each estimator.
+//! The cost figures of each estimator.
 
 use std::collections::BTreeSet;
 
@@ -13,11 +13,11 @@ use super::image::Image;
 const CLOCK_HZ: f64 = 168e6;
 
 /// What the counting itself takes: the call, a branch, and the return of a function that does nothing.
-const NOTHING: &str = "nothing";
+const EMPTY_CASE: &str = "nothing";
 
 /// Bytes that the flash of an STM32F405 hands over at once, and the cycles that the core waits where they are not at hand.
-const LINE: u32 = 16;
-const WAIT: u32 = 5;
+const FLASH_LINE_BYTES: u32 = 16;
+const FLASH_WAIT_CYCLES: u32 = 5;
 
 /// The figures of one estimator.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -70,12 +70,12 @@ pub fn entry(image: &Image, case: &Case) -> Option<u32> {
     case.times.keys().find_map(|at| called(at).map(|function| function.start))
 }
 
-/// The figures of all cases but the first, which is of nothing and tells what the rest is to be relieved of.
+/// The figures of all cases but the first, the empty call, whose cost is subtracted from the others.
 ///
 /// # Errors
 /// There is no such case, one has no pass, or its stack is not bounded.
 pub fn of(image: &Image, cases: &[Case], updates: &[usize]) -> Result<Vec<Figures>> {
-    let nothing = cases.first().filter(|case| case.name == NOTHING).and_then(|case| case.passes.first());
+    let nothing = cases.first().filter(|case| case.name == EMPTY_CASE).and_then(|case| case.passes.first());
     let nothing = nothing.context("the image did not measure nothing first")?;
     let calls = Calls::of(image);
     let relieved = |value: u32, by: u32| value.saturating_sub(by);
@@ -91,7 +91,7 @@ pub fn of(image: &Image, cases: &[Case], updates: &[usize]) -> Result<Vec<Figure
             let entry = entry(image, case).with_context(|| format!("{}: nothing was called", case.name))?;
             let blind = calls.blind(entry);
             ensure!(blind.is_empty(), "{}: a call through a register in {}", case.name, blind[0].name);
-            let lines: BTreeSet<u32> = case.times.keys().map(|address| address / LINE).collect();
+            let lines: BTreeSet<u32> = case.times.keys().map(|address| address / FLASH_LINE_BYTES).collect();
             let hi = relieved(worst.cycles[1], nothing.cycles[1]);
             Ok(Figures {
                 name: case.name.clone(),
@@ -104,7 +104,7 @@ pub fn of(image: &Image, cases: &[Case], updates: &[usize]) -> Result<Vec<Figure
                 worst_cycles_lo: relieved(worst.cycles[0], nothing.cycles[0]),
                 worst_cycles_hi: hi,
                 flash_lines: lines.len(),
-                cold_cycles: WAIT * u32::try_from(lines.len())?,
+                cold_cycles: FLASH_WAIT_CYCLES * u32::try_from(lines.len())?,
                 stack_bytes: calls.stack(entry).with_context(|| format!("{}: a function calls itself", case.name))?,
                 stack_painted_bytes: case.passes.iter().map(|pass| pass.stack).max().unwrap_or(0),
                 state_bytes: case.state + case.ring,

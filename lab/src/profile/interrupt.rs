@@ -52,19 +52,19 @@ pub fn interrupt_costs() -> Result<Vec<InterruptCost>> {
             _ => input,
         })
         .collect();
-    let gauge = Gauge { drive, image, counter: counter()? };
-    let mut costs = vec![gauge.measure("without sensors", None, &[])?];
-    costs.push(gauge.measure(
+    let meter = InterruptMeter { drive, image, counter: counter()? };
+    let mut costs = vec![meter.measure("without sensors", None, &[])?];
+    costs.push(meter.measure(
         "other settings are taken",
         Some(Settings { window: 299, ..Settings::default() }),
         &sound,
     )?);
     for (what, words) in [("bls, a contact", &sound), ("bls, faults", &upset)] {
-        costs.push(gauge.measure(what, Some(Settings::default()), words)?);
+        costs.push(meter.measure(what, Some(Settings::default()), words)?);
     }
     // Of the laws blmf takes longest; taking it over is in the figure.
     let longest = Settings { method: Method::Blmf, ..Settings::default() };
-    costs.push(gauge.measure("blmf, taken over, faults", Some(longest), &upset)?);
+    costs.push(meter.measure("blmf, taken over, faults", Some(longest), &upset)?);
     Ok(costs)
 }
 
@@ -80,13 +80,13 @@ fn trial() -> Result<Vec<Input>> {
     Ok(inputs(&recording, &rig, &calibration, &calibration.scale()))
 }
 
-struct Gauge {
+struct InterruptMeter {
     drive: DriveImage,
     image: Image,
     counter: PathBuf,
 }
 
-impl Gauge {
+impl InterruptMeter {
     fn measure(&self, what: &str, settings: Option<Settings>, words: &[Input]) -> Result<InterruptCost> {
         let folder = tempfile::tempdir().context("cannot make a folder for the counts")?;
         let (costs, counts) = (folder.path().join("costs"), folder.path().join("counts"));

@@ -12,7 +12,7 @@ use super::table::NO_BOARD;
 const STYLE: &str = include_str!("../../assets/profile.css");
 
 /// Bars below this share of an update are not drawn.
-const THIN: f64 = 0.002;
+const MIN_SHARE: f64 = 0.002;
 
 /// The page.
 pub fn page(image: &Image, cases: &[Case], figures: &[Figures]) -> String {
@@ -58,7 +58,7 @@ fn estimator(image: &Image, case: &Case, figures: &Figures) -> Markup {
             p { (format!("{:.1}", figures.instructions_mean)) " instructions on the mean, " (figures.instructions_worst)
                 " at sample " (figures.worst_sample) "; " (figures.cycles_lo) " to " (figures.cycles_hi) " cycles" }
             div.bar {
-                @for (at, (start, count)) in order.iter().enumerate().filter(|(_, (_, count))| count / total > THIN) {
+                @for (at, (start, count)) in order.iter().enumerate().filter(|(_, (_, count))| count / total > MIN_SHARE) {
                     span class=(format!("part c{}", at % 6)) style=(format!("flex-grow:{count:.3}"))
                         title=(format!("{}: {count:.1}", name(*start))) { (short(name(*start))) }
                 }

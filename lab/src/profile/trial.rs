@@ -10,7 +10,7 @@ use rand_distr::{Distribution as _, Normal};
 const SAMPLES: u32 = 4_000;
 
 /// Stiffness in N/m from a time in seconds on; none: nothing is touched.
-const COURSE: [(f64, Option<f64>); 7] = [
+const STIFFNESS_SCHEDULE: [(f64, Option<f64>); 7] = [
     (0.0, None),
     (0.2, Some(300.0)),
     (1.1, Some(900.0)),
@@ -36,7 +36,8 @@ pub fn samples() -> Result<Vec<Sample>> {
     Ok((0..SAMPLES)
         .map(|k| {
             let t = f64::from(k) * 1e-3;
-            let stiffness = COURSE.iter().rev().find(|(from, _)| *from <= t).and_then(|(_, stiffness)| *stiffness);
+            let stiffness =
+                STIFFNESS_SCHEDULE.iter().rev().find(|(from, _)| *from <= t).and_then(|(_, stiffness)| *stiffness);
             let phase = 62.831_853 * t;
             let middle = if stiffness.is_some() { 0.010 } else { -0.010 };
             let (x, v) = (middle + 0.0033 * libm::sin(phase), 0.0033 * 62.831_853 * libm::cos(phase));

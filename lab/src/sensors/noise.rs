@@ -1,15 +1,15 @@
 //! The white noise of a channel, told from whatever moves slowly beneath it.
 
 /// Samples that one residual looks at.
-const REACH: usize = 7;
+const FILTER_SPAN: usize = 7;
 
 /// Residuals whose mean square makes one vote.
-const BLOCK: usize = 32;
+const BLOCK_SAMPLES: usize = 32;
 
 /// Median over mean of the mean square of such a block. Neighbouring residuals share samples: 32 of them are worth 10.4
 /// independent ones (the squares of their autocorrelations C(12, 6+j)/C(12, 6) add to 3.17), and the median of a
 /// chi-square of k degrees is (1 - 2/(9 k))^3 of its mean.
-const MEDIAN: f64 = 0.937;
+const MEDIAN_OVER_MEAN: f64 = 0.937;
 
 /// Standard deviation of the white noise of `values` sampled at `time`; 0 for fewer than three values.
 ///
@@ -25,18 +25,18 @@ pub fn white_noise(time: &[f64], values: &[f64]) -> f64 {
     if rows < 3 {
         return 0.0;
     }
-    let reach = REACH.min(rows);
+    let reach = FILTER_SPAN.min(rows);
     let residuals: Vec<_> =
         (0..=rows - reach).map(|at| residual(&time[at..at + reach], &values[at..at + reach])).collect();
-    let mut votes: Vec<_> = residuals.chunks(BLOCK).map(mean_square).collect();
+    let mut votes: Vec<_> = residuals.chunks(BLOCK_SAMPLES).map(mean_square).collect();
     // A short remainder votes as loudly as a block: leave it out where there is anything else.
-    if residuals.len() % BLOCK != 0 && votes.len() > 1 {
+    if residuals.len() % BLOCK_SAMPLES != 0 && votes.len() > 1 {
         votes.pop();
     }
     let middle = votes.len() / 2;
     let median = *votes.select_nth_unstable_by(middle, f64::total_cmp).1;
     // One or two votes have no median to speak of.
-    if votes.len() > 2 { (median / MEDIAN).sqrt() } else { median.sqrt() }
+    if votes.len() > 2 { (median / MEDIAN_OVER_MEAN).sqrt() } else { median.sqrt() }
 }
 
 fn mean_square(block: &[f64]) -> f64 {

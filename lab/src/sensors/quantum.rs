@@ -1,23 +1,23 @@
 //! The step of a rounded reading.
 
 /// A gap lies on the lattice when it is this near to a whole number of steps, in steps.
-const NEAR: f64 = 0.15;
+const LATTICE_TOLERANCE: f64 = 0.15;
 
 /// A lattice misses by no more than this part of the largest reading, the last of seven printed digits, ...
-const DIGITS: f64 = 1e-6;
+const RELATIVE_PRECISION: f64 = 1e-6;
 
 /// ... or by so many units of the last decimal. A ramp at constant speed also steps evenly, but not as evenly as that.
-const DECIMALS: f64 = 1.5;
+const MAX_DECIMAL_MISS: f64 = 1.5;
 
 /// Share of gaps that must lie on the lattice. Of gaps that know no lattice 30 % do so by chance.
-const SHARE: f64 = 0.9;
+const MIN_LATTICE_FRACTION: f64 = 0.9;
 
 /// Below so many gaps chance alone may put 90 % of them on a lattice; then the readings must also repeat.
-const ENOUGH: usize = 12;
+const MIN_DISTINCT_VALUES: usize = 12;
 
 /// Mean length of an unbroken run of single steps from which it is a motion and no sensor. A rounded ramp of nearly one
 /// step a reading breaks its runs as soon as the speed is off by one part in as many.
-const EVEN: usize = 12;
+const MAX_EVEN_RUN: usize = 12;
 
 /// The largest step of which all readings are whole multiples apart; 0 where there is none.
 ///
@@ -37,11 +37,11 @@ pub fn quantum(values: &[f64]) -> f64 {
     }
     gaps.sort_unstable_by(f64::total_cmp);
     let repeats = gaps.len() + 1 < values.len() / 2;
-    if gaps.len() < ENOUGH && !repeats {
+    if gaps.len() < MIN_DISTINCT_VALUES && !repeats {
         return 0.0;
     }
     let decimal = last_decimal(values, largest);
-    let slack = (DIGITS * largest).max(DECIMALS * decimal);
+    let slack = (RELATIVE_PRECISION * largest).max(MAX_DECIMAL_MISS * decimal);
     let step = candidates(&gaps)
         .filter(|step| *step > 8.0 * grain)
         .filter_map(|step| lattice(&gaps, step, slack))
@@ -64,7 +64,7 @@ fn is_even_motion(values: &[f64], step: f64) -> bool {
         starts += usize::from(count > 0.0 && before == 0.0);
         before = count;
     }
-    step > 0.0 && single as f64 > SHARE * moves as f64 && moves >= EVEN * starts
+    step > 0.0 && single as f64 > MIN_LATTICE_FRACTION * moves as f64 && moves >= MAX_EVEN_RUN * starts
 }
 
 /// The power of ten of which all readings are multiples, 0 where there is none above the number format's own grain.
@@ -105,7 +105,7 @@ fn lattice(gaps: &[f64], step: f64, slack: f64) -> Option<f64> {
         if square > 0.0 {
             step = product / square;
         }
-        if share_near(&gaps[..judged], step, slack) < SHARE {
+        if share_near(&gaps[..judged], step, slack) < MIN_LATTICE_FRACTION {
             return None;
         }
         reach *= 4.0;
@@ -120,7 +120,7 @@ fn share_near(gaps: &[f64], step: f64, slack: f64) -> f64 {
     }
     let near = |gap: &&f64| {
         let count = (*gap / step).round();
-        (*gap - count * step).abs() < slack.min(NEAR * step)
+        (*gap - count * step).abs() < slack.min(LATTICE_TOLERANCE * step)
     };
     gaps.iter().filter(near).count() as f64 / gaps.len() as f64
 }
