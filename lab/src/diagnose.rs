@@ -6,7 +6,7 @@
 //! experiment that would separate what is left undecided ([`experiment`]). [`report`] writes it down.
 //!
 //! Dependencies run one way, in this order: [`linalg`], [`signals`], [`model`], [`estimation`], [`bootstrap`], [`selection`],
-//! [`report`], [`command`]. [`check`] depends on [`signals`] alone; [`experiment`] on all up to [`bootstrap`].
+//! [`report`], [`command`]; the tuned numbers of all stand in [`thresholds`]. [`check`] depends on [`signals`] alone; [`experiment`] on all up to [`bootstrap`].
 
 pub mod bootstrap;
 pub mod check;
@@ -18,6 +18,7 @@ pub mod model;
 pub mod report;
 pub mod selection;
 pub mod signals;
+pub mod thresholds;
 
 use anyhow::{Context as _, Result};
 

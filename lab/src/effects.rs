@@ -29,8 +29,27 @@ pub use load_side::LoadSideSignals;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 
-/// What an effect with a hidden state carries from one sample to the next; all zero at the start of a trial.
-pub type EffectState = [f64; 7];
+/// The internal state of an effect with state, from one sample to the next; all zero at the start of a trial. Each effect says what
+/// its entries mean.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EffectState([f64; STATE_SIZE]);
+
+/// Entries of an effect's state: as many as the effect with the most of them needs.
+const STATE_SIZE: usize = 7;
+
+impl std::ops::Deref for EffectState {
+    type Target = [f64; STATE_SIZE];
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl std::ops::DerefMut for EffectState {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
 
 /// Physics beyond the nominal model.
 pub trait Effect: Sync {
@@ -52,7 +71,7 @@ pub trait Effect: Sync {
     }
 
     /// Acts on the contact. `values` are in the order of the form's parameters.
-    fn act_on_contact(&self, _form: usize, _values: &[f64], _memory: &mut EffectState, _touch: &mut ContactState) {}
+    fn act_on_contact(&self, _form: usize, _values: &[f64], _state: &mut EffectState, _touch: &mut ContactState) {}
 
     /// The greatest effort that it lets pass, for effects of the drive that cut the command's peaks: along a recording they
     /// are cut row by row, before any filter.
@@ -61,7 +80,7 @@ pub trait Effect: Sync {
     }
 
     /// Acts on the drive.
-    fn act_on_drive(&self, _form: usize, _values: &[f64], _memory: &mut EffectState, _push: &mut DriveState) {}
+    fn act_on_drive(&self, _form: usize, _values: &[f64], _state: &mut EffectState, _push: &mut DriveState) {}
 
     /// What a motor's own motion, ahead of the tool's, takes from the effort along a recording, row by row. Effects that say
     /// so do not `push` there.

@@ -22,8 +22,9 @@ pub struct DiagnosisJson {
 /// Something to know.
 #[derive(Debug, Clone, Deserialize)]
 pub struct FindingJson {
-    /// In words.
-    pub text: String,
+    /// What it is, for programs: "one_speed".
+    #[serde(default)]
+    pub code: String,
 }
 
 /// A named effect.

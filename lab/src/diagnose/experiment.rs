@@ -19,6 +19,8 @@ use serde::Serialize;
 use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::estimation::whitener::Whitener;
 use crate::diagnose::model::Model;
+pub use crate::diagnose::thresholds::experiment::DECISIVE_CHI2;
+use crate::diagnose::thresholds::experiment::SPEED_FRACTIONS;
 use discrepancy::Discrepancy;
 use hypothesis::Hypothesis;
 use hypothesis_pairs::HypothesisPairs;
@@ -38,12 +40,6 @@ pub struct Experiment {
     /// Commanded position.
     pub reference: Vec<f64>,
 }
-
-/// Energy from which two models count as told apart: chance leaves less but once in two thousand times.
-pub const DECISIVE_CHI2: f64 = 12.0;
-
-/// Parts of the greatest speed at which a motion is tried, until force and effort stay within what they were.
-const SPEED_FRACTIONS: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
 
 /// A motion that was tried.
 struct TriedMotion {

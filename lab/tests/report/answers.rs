@@ -43,13 +43,19 @@ pub fn explained() -> (Diagnosis, PlotData) {
         ],
         findings: vec![
             Finding {
+                code: "clipped_force",
                 grave: true,
                 place: "trial-2.csv".into(),
                 text:
                     "The force sits at its end for 0.4 s: those samples say nothing. Use a sensor that reaches further."
                         .into(),
             },
-            Finding { grave: false, place: String::new(), text: "Position is rounded to 0.1 mm.".into() },
+            Finding {
+                code: "coarse_position",
+                grave: false,
+                place: String::new(),
+                text: "Position is rounded to 0.1 mm.".into(),
+            },
         ],
         ..bare(Verdict::Explained)
     };

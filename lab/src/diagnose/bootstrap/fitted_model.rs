@@ -11,6 +11,10 @@ use crate::diagnose::estimation::whitener::{NoiseModel, Whitener, filtered_trial
 use crate::diagnose::linalg::energy;
 use crate::diagnose::model::{Channels, Model, Residual, Term, index};
 use crate::diagnose::signals::filtered_trial::AnalysisTrial;
+use crate::diagnose::thresholds::fitted_model::{
+    CONTACT_QUANTIZATION_FACTOR, DIVERGENCE_RATIO, DRIVE_QUANTIZATION_FACTOR, LARGE_MISFIT_RATIO, MAX_BIAS_FRACTION,
+    MAX_REFITS, MIN_QUANTIZATION_POWER, NOISE_REPLICATES,
+};
 use crate::effects::ExcitationStats;
 
 /// A fitted model and what noise alone would leave of it.
@@ -61,30 +65,6 @@ struct PilotReplicates {
     replicates: Vec<Vec<AnalysisTrial>>,
     residuals: Vec<Vec<Residual>>,
 }
-
-/// Share of its scale by which a value may be biased.
-const MAX_BIAS_FRACTION: f64 = 0.5;
-
-/// Growth of what twins leave beyond which their origin is astray.
-const DIVERGENCE_RATIO: f64 = 2.0;
-
-/// Times that twins follow values that go on.
-const MAX_REFITS: usize = 2;
-
-/// Twins that tell the floor.
-const NOISE_REPLICATES: usize = 24;
-
-/// Power over the noise's from which much is missing.
-const LARGE_MISFIT_RATIO: f64 = 30.0;
-
-/// Doubt from which a residual within it is not looked into.
-const MIN_QUANTIZATION_POWER: f64 = 1.2;
-
-/// Part of a rounding's power that is taken for possible.
-const CONTACT_QUANTIZATION_FACTOR: f64 = 1.4;
-
-/// The same of a rounding's power in the balance of the drive.
-const DRIVE_QUANTIZATION_FACTOR: f64 = 0.02;
 
 /// `moved`, no further from the fitted value than a bias is believed: one of more than half an effect's value is not told from twins,
 /// and the effect is not turned off by it.

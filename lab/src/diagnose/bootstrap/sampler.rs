@@ -15,6 +15,7 @@ use crate::diagnose::signals::dequantize::dequantize;
 use crate::diagnose::signals::derivative_filter::DerivativeFilter;
 use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
 use crate::diagnose::signals::uniform_trial::UniformTrial;
+use crate::diagnose::thresholds::sampler::{REST_EDGE_WIDTHS, SPECTRUM_REPLICATES};
 use crate::effects::Reading;
 
 /// Everything that twins are made from.
@@ -60,12 +61,6 @@ pub struct NoiseFreeSignals {
     force: Vec<Option<Vec<f64>>>,
     effort: Vec<Option<Vec<f64>>>,
 }
-
-/// Widths of the filter over which a rest begins and ends.
-const REST_EDGE_WIDTHS: f64 = 3.0;
-
-/// Twins from which the noise of the sensors is told.
-const SPECTRUM_REPLICATES: usize = 4;
 
 impl BootstrapSampler {
     /// Prepares `uniform_trials`.

@@ -14,7 +14,7 @@ pub fn missing(rig: &Rig, views: &[CheckedTrial<'_>]) -> Vec<RankedFinding> {
     let force = absent(
         &force,
         views.len(),
-        "force",
+        ("missing_force", "force"),
         rig.contact.is_some(),
         "[contact]",
         "the contact and the force sensor cannot be seen",
@@ -22,14 +22,14 @@ pub fn missing(rig: &Rig, views: &[CheckedTrial<'_>]) -> Vec<RankedFinding> {
     let effort = absent(
         &effort,
         views.len(),
-        "effort",
+        ("missing_effort", "effort"),
         rig.drive.is_some(),
         "[drive]",
         "the gain of the force sensor and what acts in the drive cannot be seen",
     );
     let unused = velocity.map(|view| {
         let text = "The measured velocity is not used: speed is taken from the position, through the same filter as every other channel.";
-        RankedFinding::mild("velocity", format!("{}, velocity", view.name()), 0.0, text)
+        RankedFinding::mild("unused_velocity", format!("{}, velocity", view.name()), 0.0, text)
     });
     [force, effort, unused].into_iter().flatten().collect()
 }
@@ -37,26 +37,26 @@ pub fn missing(rig: &Rig, views: &[CheckedTrial<'_>]) -> Vec<RankedFinding> {
 fn absent(
     lacking: &[&CheckedTrial<'_>],
     trials: usize,
-    name: &'static str,
+    (code, name): (&'static str, &str),
     is_known: bool,
     table: &str,
     lost: &str,
 ) -> Option<RankedFinding> {
     match (lacking.first(), is_known) {
         (Some(_), _) if lacking.len() == trials => {
-            Some(RankedFinding::mild(name, "", 0.0, format!("No {name} was recorded: {lost}.")))
+            Some(RankedFinding::mild(code, "", 0.0, format!("No {name} was recorded: {lost}.")))
         }
         (Some(view), _) => {
             let text = format!(
                 "This trial has no {name} while others have: {lost} unless every trial has it. Diagnose such trials by themselves."
             );
-            Some(RankedFinding::mild(name, view.name(), 0.0, text))
+            Some(RankedFinding::mild(code, view.name(), 0.0, text))
         }
         (None, false) => {
             let text = format!(
                 "The {name} was recorded, but the rig file has no {table} table: {lost}. Add the table with nominal values."
             );
-            Some(RankedFinding::mild(name, "", 0.0, text))
+            Some(RankedFinding::mild(code, "", 0.0, text))
         }
         (None, true) => None,
     }

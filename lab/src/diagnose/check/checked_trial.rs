@@ -2,6 +2,9 @@
 
 use crate::diagnose::signals::derivative_filter::DerivativeFilter;
 use crate::diagnose::signals::uniform_trial::UniformTrial;
+use crate::diagnose::thresholds::check_checked_trial::{
+    MAX_SPEED_NOISE_FRACTION, MAX_WIDTH_FRACTION, MIN_WIDTH_PERIODS,
+};
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
 
@@ -30,15 +33,6 @@ pub struct CheckedTrial<'a> {
     /// What noise leaves in depth, speed and force.
     pub noise: [f64; 3],
 }
-
-/// Share of the usual speed that noise may leave in it.
-const MAX_SPEED_NOISE_FRACTION: f64 = 0.03;
-
-/// Narrowest blur, in periods.
-const MIN_WIDTH_PERIODS: f64 = 1.5;
-
-/// Widest blur, as a share of the trial.
-const MAX_WIDTH_FRACTION: f64 = 0.004;
 
 impl<'a> CheckedTrial<'a> {
     /// Looks at a trial.

@@ -3,25 +3,10 @@
 use super::checked_trial::{CheckedTrial, bounds, quantile, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{count, digits, quantity};
+use crate::diagnose::thresholds::check_clock::{
+    FEW_ROWS, MAX_JITTER, PERIOD_RATIO, RATE_CHANGE_RATIO, RATE_SEGMENTS, TOO_FEW_ROWS,
+};
 use crate::rig::Rig;
-
-/// Stretches that a trial is cut into to see its rate change.
-const RATE_SEGMENTS: usize = 20;
-
-/// Ratio of two periods that makes two rates.
-const RATE_CHANGE_RATIO: f64 = 1.5;
-
-/// Deviation of nine in ten intervals, over the period, from which a clock is uneven.
-const MAX_JITTER: f64 = 0.25;
-
-/// Ratio of periods of two trials that makes a difference.
-const PERIOD_RATIO: f64 = 1.05;
-
-/// Rows of all trials below which little can be told, ...
-const FEW_ROWS: usize = 200;
-
-/// ... and below which nothing can.
-const TOO_FEW_ROWS: usize = 50;
 
 /// What is wrong with the clock of one trial.
 pub fn faults(view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
@@ -77,7 +62,7 @@ fn two_rates(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
         quantity(short, "s"),
         quantity(long, "s"),
     );
-    Some(RankedFinding::mild("two rates", format!("{}, time", view.name()), long / short, text))
+    Some(RankedFinding::mild("two_rates", format!("{}, time", view.name()), long / short, text))
 }
 
 fn jitter(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
@@ -143,7 +128,7 @@ fn differing(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
         fast.name(),
     );
     (long > PERIOD_RATIO * short)
-        .then(|| RankedFinding::mild("rates", format!("{}, time", slow.name()), long / short, text))
+        .then(|| RankedFinding::mild("differing_rates", format!("{}, time", slow.name()), long / short, text))
 }
 
 fn too_few(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
@@ -154,7 +139,7 @@ fn too_few(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
         count(rows, "row"),
     );
     (rows < FEW_ROWS)
-        .then(|| RankedFinding { grave: rows < TOO_FEW_ROWS, ..RankedFinding::mild("rows", "", 0.0, text) })
+        .then(|| RankedFinding { grave: rows < TOO_FEW_ROWS, ..RankedFinding::mild("few_rows", "", 0.0, text) })
 }
 
 fn too_slow(rig: &Rig, views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
@@ -175,5 +160,5 @@ fn too_slow(rig: &Rig, views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
         quantity(time, "s"),
         digits((4.0 / time).ceil()),
     );
-    (period > 0.5 * time).then(|| RankedFinding::mild("slow", "time", 0.0, text))
+    (period > 0.5 * time).then(|| RankedFinding::mild("slow_sampling", "time", 0.0, text))
 }

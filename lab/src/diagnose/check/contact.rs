@@ -3,19 +3,8 @@
 use super::checked_trial::{CheckedTrial, bounds, correlation, middle, quantile, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{digits, quantity};
+use crate::diagnose::thresholds::check_contact::{DEPTH_SLICES, FORCE_RISE_SIGMAS, MIN_CORRELATION, MIN_STATE_ROWS};
 use crate::rig::{Contact, Rig};
-
-/// Correlation of force and depth that speaks for itself.
-const MIN_CORRELATION: f64 = 0.6;
-
-/// Deviations of the smoothed noise from which a force is there.
-const FORCE_RISE_SIGMAS: f64 = 10.0;
-
-/// Slices of the depth in which a rise is looked for.
-const DEPTH_SLICES: usize = 50;
-
-/// Rows, as recorded, that a state has to last to be known.
-const MIN_STATE_ROWS: f64 = 5.0;
 
 /// Force that falls as the tool goes in.
 pub fn wrong_sign(rig: &Rig, view: &CheckedTrial<'_>) -> Option<RankedFinding> {
@@ -35,7 +24,7 @@ pub fn wrong_sign(rig: &Rig, view: &CheckedTrial<'_>) -> Option<RankedFinding> {
         digits(link),
     );
     (depth.len() > 10 && stands_out && link < -MIN_CORRELATION)
-        .then(|| RankedFinding::grave("force sign", format!("{}, force", view.name()), -link, text))
+        .then(|| RankedFinding::grave("force_sign", format!("{}, force", view.name()), -link, text))
 }
 
 /// Whether the surface was reached and left, over all trials.
@@ -57,7 +46,7 @@ pub fn reached(rig: &Rig, views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
             (!was_free).then(|| {
                 let text = "The tool is in contact from the first row to the last: what the force sensor reads when nothing touches, and where the surface \
                             lies, cannot be told apart. Start and end each trial clear of the surface.";
-                RankedFinding::mild("never free", "", 0.0, text)
+                RankedFinding::mild("never_free", "", 0.0, text)
             })
         }
     }

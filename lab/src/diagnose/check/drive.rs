@@ -3,16 +3,8 @@
 use super::checked_trial::{CheckedTrial, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::digits;
+use crate::diagnose::thresholds::check_drive::{AVERAGED_ROWS, MIN_CORRELATION, MIN_ROWS};
 use crate::rig::{Coordinate, Rig};
-
-/// Correlation of what is left of effort and acceleration that speaks for itself.
-const MIN_CORRELATION: f64 = 0.65;
-
-/// Rows that are put together, in turn.
-const AVERAGED_ROWS: [usize; 4] = [1, 4, 16, 64];
-
-/// Fewest rows, or means of them.
-const MIN_ROWS: usize = 50;
 
 /// Effort that works against the acceleration it should cause.
 pub fn wrong_sign(rig: &Rig, view: &CheckedTrial<'_>) -> Option<RankedFinding> {
@@ -52,7 +44,7 @@ pub fn wrong_sign(rig: &Rig, view: &CheckedTrial<'_>) -> Option<RankedFinding> {
         digits(link),
     );
     (link < -MIN_CORRELATION)
-        .then(|| RankedFinding::grave("effort sign", format!("{}, effort", view.name()), -link, text))
+        .then(|| RankedFinding::grave("effort_sign", format!("{}, effort", view.name()), -link, text))
 }
 
 /// Rows in which nothing pushes on the tool but the drive.

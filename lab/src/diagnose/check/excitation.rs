@@ -3,37 +3,13 @@
 use super::checked_trial::{CheckedTrial, bounds, quantile};
 use super::ranked_finding::RankedFinding;
 use super::wording::quantity;
+use crate::diagnose::thresholds::check_excitation::{
+    BACK, HELD, MOVES, ONE_DEPTH, ONE_SPEED, PIECES, ROWS, SHOWN, STILL,
+};
 use crate::rig::Rig;
-
-/// Ratio of speeds below which they are one speed.
-const ONE_SPEED: f64 = 1.5;
-
-/// Share of the usual speed above which the tool moves.
-const MOVES: f64 = 0.1;
-
-/// Range of depths, over the depth, below which it is one depth.
-const ONE_DEPTH: f64 = 0.2;
 
 /// Depths that are on the way to the one depth, over it, ...
 const WAY: std::ops::Range<f64> = 0.1..0.8;
-
-/// ... and rows, as recorded, on that way from which depth shows after all.
-const SHOWN: f64 = 20.0;
-
-/// Pieces of a contact among which a hold is looked for, ...
-const PIECES: usize = 16;
-
-/// ... how many in a row make one, ...
-const HELD: usize = 3;
-
-/// ... and how far they may differ, over the range of depths.
-const STILL: f64 = 0.03;
-
-/// Share of moving rows that have to go back for it to count.
-const BACK: f64 = 0.02;
-
-/// Fewest rows in contact that say anything of the motion.
-const ROWS: usize = 20;
 
 /// The rows that a channel speaks of: of each trial depth and speed.
 struct Motion {
@@ -103,7 +79,7 @@ impl Motion {
         );
         let on_way = self.depths().iter().filter(|depth| WAY.contains(&(depth.abs() / deep))).count() as f64;
         (spread < ONE_DEPTH * deep && on_way * self.stride < SHOWN)
-            .then(|| RankedFinding::mild("one depth", "motion", 0.0, text))
+            .then(|| RankedFinding::mild("one_depth", "motion", 0.0, text))
     }
 
     /// Whether the mean depth never stays: looked for in pieces, so that a small oscillation does not hide a hold.
@@ -126,7 +102,7 @@ impl Motion {
         let text = "The tool never stays at a depth: whether the force relaxes under a held contact cannot be told from damping and hysteresis. Add a hold of \
                     some seconds, as long as the slowest change that matters.";
         (longest > PIECES && !self.stretches.iter().any(|stretch| held(&stretch)))
-            .then(|| RankedFinding::mild("no hold", "motion", 0.0, text))
+            .then(|| RankedFinding::mild("no_hold", "motion", 0.0, text))
     }
 }
 
@@ -148,7 +124,7 @@ fn one_speed(length: &str, inward: &[f64], outward: &[f64], in_contact: bool) ->
         "The tool moves at one speed each way ({}): {what}. Run the same way at two more speeds, a factor of three apart.",
         speeds.join(" and "),
     );
-    Some(RankedFinding::mild("one speed", "motion", 0.0, text))
+    Some(RankedFinding::mild("one_speed", "motion", 0.0, text))
 }
 
 fn one_way(inward: &[f64], outward: &[f64]) -> Option<RankedFinding> {
@@ -163,5 +139,5 @@ fn one_way(inward: &[f64], outward: &[f64]) -> Option<RankedFinding> {
         }
         _ => return None,
     };
-    (all > ROWS as f64 / 2.0).then(|| RankedFinding::mild("one way", "motion", 0.0, text))
+    (all > ROWS as f64 / 2.0).then(|| RankedFinding::mild("one_way", "motion", 0.0, text))
 }

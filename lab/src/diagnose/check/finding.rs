@@ -5,6 +5,8 @@ use serde::Serialize;
 /// Something to know.
 #[derive(Debug, Clone, Serialize)]
 pub struct Finding {
+    /// What it is, for programs: "one_speed". Of a code there is at most one finding of the recordings.
+    pub code: &'static str,
     /// Whether it casts doubt on the answer.
     pub grave: bool,
     /// File, channel or time it is about; empty where it is about all.

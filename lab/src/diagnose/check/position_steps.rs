@@ -3,28 +3,11 @@
 use super::checked_trial::{CheckedTrial, quantile, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{count, digits, quantity};
+use crate::diagnose::thresholds::check_position_steps::{
+    BLIND_STEPS, COARSE_STEPS, GRAVE_JUMP_FRACTION, JUMP_RANGE_FRACTION, JUMP_RATE_RATIO, JUMP_RESOLUTION_STEPS,
+    NOISE_RANGE_SIGMAS,
+};
 use crate::rig::Rig;
-
-/// A leap is so many times what a row moves at most, ...
-const JUMP_RATE_RATIO: f64 = 10.0;
-
-/// ... such a share of the whole range, ...
-const JUMP_RANGE_FRACTION: f64 = 0.1;
-
-/// (from which it spoils the trial), ...
-const GRAVE_JUMP_FRACTION: f64 = 0.5;
-
-/// ... and so many steps of the sensor.
-const JUMP_RESOLUTION_STEPS: f64 = 5.0;
-
-/// Steps over the whole motion below which a sensor is coarse, ...
-const COARSE_STEPS: f64 = 20.0;
-
-/// ... and below which it shows next to nothing.
-const BLIND_STEPS: f64 = 5.0;
-
-/// Deviations over which pure noise ranges: a hundredth left out at either end leaves 4.7.
-const NOISE_RANGE_SIGMAS: f64 = 5.5;
 
 /// Positions that leap from one row to the next and stay there.
 pub fn jumps(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
@@ -58,7 +41,7 @@ pub fn jumps(view: &CheckedTrial<'_>) -> Option<RankedFinding> {
     let share = leap.abs() / whole;
     Some(RankedFinding {
         grave: share > GRAVE_JUMP_FRACTION,
-        ..RankedFinding::mild("jump", format!("{}, position", view.name()), share, text)
+        ..RankedFinding::mild("position_jump", format!("{}, position", view.name()), share, text)
     })
 }
 
@@ -73,7 +56,7 @@ pub fn coarse(rig: &Rig, view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
     let position = judge(motion, figures.position.resolution, figures.position.noise).map(|steps| RankedFinding {
         grave: steps < BLIND_STEPS,
         ..RankedFinding::mild(
-            "coarse position",
+            "coarse_position",
             format!("{}, position", view.name()),
             steps.recip(),
             format!(
@@ -93,7 +76,7 @@ pub fn coarse(rig: &Rig, view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
             quantity(whole, view.push),
             digits(steps),
         );
-        Some(RankedFinding { grave: steps < BLIND_STEPS, ..RankedFinding::mild("coarse force", format!("{}, force", view.name()), steps.recip(), text) })
+        Some(RankedFinding { grave: steps < BLIND_STEPS, ..RankedFinding::mild("coarse_force", format!("{}, force", view.name()), steps.recip(), text) })
     });
     [position, force].into_iter().flatten().collect()
 }

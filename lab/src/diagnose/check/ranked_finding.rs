@@ -6,8 +6,8 @@ use crate::recording::Recording;
 /// What one check says of one trial.
 #[derive(Debug)]
 pub struct RankedFinding {
-    /// Kind and channel: of each there is one finding.
-    pub kind: &'static str,
+    /// Code of the finding, by kind and channel: of each there is one.
+    pub code: &'static str,
     /// Whether it casts doubt on the answer.
     pub grave: bool,
     /// What it is about: file, channel, time; joined by commas.
@@ -20,13 +20,13 @@ pub struct RankedFinding {
 
 impl RankedFinding {
     /// A note that does not cast doubt on the answer.
-    pub fn mild(kind: &'static str, place: impl Into<String>, weight: f64, text: impl Into<String>) -> Self {
-        Self { kind, grave: false, place: place.into(), weight, text: text.into() }
+    pub fn mild(code: &'static str, place: impl Into<String>, weight: f64, text: impl Into<String>) -> Self {
+        Self { code, grave: false, place: place.into(), weight, text: text.into() }
     }
 
     /// A note that does.
-    pub fn grave(kind: &'static str, place: impl Into<String>, weight: f64, text: impl Into<String>) -> Self {
-        Self { grave: true, ..Self::mild(kind, place, weight, text) }
+    pub fn grave(code: &'static str, place: impl Into<String>, weight: f64, text: impl Into<String>) -> Self {
+        Self { grave: true, ..Self::mild(code, place, weight, text) }
     }
 }
 
@@ -34,7 +34,7 @@ impl RankedFinding {
 pub fn merge_findings(notes: Vec<RankedFinding>, recordings: &[Recording]) -> Vec<Finding> {
     let mut kinds: Vec<Vec<RankedFinding>> = Vec::new();
     for note in notes {
-        match kinds.iter_mut().find(|kind| kind[0].kind == note.kind) {
+        match kinds.iter_mut().find(|kind| kind[0].code == note.code) {
             Some(kind) => kind.push(note),
             None => kinds.push(vec![note]),
         }
@@ -56,5 +56,5 @@ fn merge(kind: Vec<RankedFinding>, trials: usize) -> Option<Finding> {
         all if all + 1 == trials => " All other trials show the same.".to_owned(),
         some => format!(" {some} other trials show the same."),
     };
-    Some(Finding { grave: worst.grave, place: worst.place, text: worst.text + &also })
+    Some(Finding { code: worst.code, grave: worst.grave, place: worst.place, text: worst.text + &also })
 }

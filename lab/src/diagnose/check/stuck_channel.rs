@@ -3,30 +3,18 @@
 use super::checked_trial::{CheckedTrial, bounds, middle, quantile, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{digits, quantity};
+use crate::diagnose::thresholds::check_stuck_channel::{
+    FROZEN_ROWS, MIN_EQUAL_ROWS, MIN_MOVED_FRACTION, MOVED_FRACTION_INSIDE_RANGE, NOISE_OVER_STEP,
+};
 use crate::sensors::white_noise;
-
-/// Equal rows that are worth a look.
-const MIN_EQUAL_ROWS: usize = 8;
-
-/// Equal rows that noise of a step or more never gives.
-const FROZEN_ROWS: usize = 64;
-
-/// White noise over the sensor's step from which neighbouring rows differ.
-const NOISE_OVER_STEP: f64 = 0.7;
-
-/// Share of its range that a channel should have moved by, or that another moves by, while it stands.
-const MIN_MOVED_FRACTION: f64 = 0.05;
-
-/// The same away from the channel's own ends, where a standing reading is less suspicious.
-const MOVED_FRACTION_INSIDE_RANGE: f64 = 0.25;
 
 /// Columns that do not change at all.
 pub fn dead(view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
     let recording = view.recording;
     let columns = [
-        ("dead position", "position", Some(&recording.position)),
-        ("dead force", "force", recording.force.as_ref()),
-        ("dead effort", "effort", recording.effort.as_ref()),
+        ("dead_position", "position", Some(&recording.position)),
+        ("dead_force", "force", recording.force.as_ref()),
+        ("dead_effort", "effort", recording.effort.as_ref()),
     ];
     let dead = columns.into_iter().filter_map(|(kind, name, values)| {
         let values = values?;
@@ -85,31 +73,31 @@ fn word(view: &CheckedTrial<'_>, name: &str, values: &[f64], found: &[Run]) -> O
         format!("The {name} stays at exactly {} for {} rows", quantity(value, unit), longest.end - longest.first);
     let (kind, text) = match (name, clipped) {
         ("position", true) => (
-            "clipped position",
+            "clipped_position",
             format!(
                 "{head}, its own end, while other channels move on: the sensor clips or the counter has ended. Move its range."
             ),
         ),
         ("position", false) => (
-            "stuck position",
+            "stuck_position",
             format!(
                 "{head} while other channels move on: the sensor hung, or the reading was not refreshed. Check its read-out, or cut the stretch."
             ),
         ),
         ("force", true) => (
-            "clipped force",
+            "clipped_force",
             format!(
                 "{head}, its own end, while the tool moves on: the sensor or its converter clips. Press less, or use a wider range."
             ),
         ),
         ("force", false) => (
-            "stuck force",
+            "stuck_force",
             format!(
                 "{head} though it should change: the sensor hung, or the reading was not refreshed. Check its read-out, or cut the stretch."
             ),
         ),
         (_, _) => (
-            "clipped effort",
+            "clipped_effort",
             format!(
                 "{head}, its own end, while the motion changes: the drive or the channel is at its limit. If the limit lies behind the channel, the tool got less than the column says; keep below it."
             ),

@@ -3,10 +3,8 @@
 use super::checked_trial::{CheckedTrial, quantile, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{digits, quantity};
+use crate::diagnose::thresholds::check_units::FACTOR_TOLERANCE;
 use crate::rig::{Coordinate, Rig};
-
-/// By how much a nominal stiffness may be off before a factor is no longer that factor.
-const FACTOR_TOLERANCE: f64 = 2.5;
 
 /// Forces that are off the rig's own stiffness by a factor that units make.
 pub fn suspicion(rig: &Rig, view: &CheckedTrial<'_>) -> Option<RankedFinding> {

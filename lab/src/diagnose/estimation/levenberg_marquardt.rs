@@ -6,6 +6,7 @@ use super::whitener::Whitener;
 use crate::diagnose::linalg::{dot, energy};
 use crate::diagnose::model::{Channels, Model, Residual, Term, index};
 use crate::diagnose::signals::filtered_trial::AnalysisTrial;
+use crate::diagnose::thresholds::levenberg_marquardt::{DIFFERENCE_STEP, MAX_DAMPING, MAX_ITERATIONS, TIMING_PENALTY};
 use crate::effects::{ExcitationStats, Limit, Parameter, Place};
 
 /// What is fitted to: trials, what their residuals are worth, and the rows that count.
@@ -59,6 +60,19 @@ pub struct FitResult {
     pub values: Vec<f64>,
     /// Energy of the whitened residuals.
     pub energy: f64,
+    /// How the search ended.
+    pub termination: Termination,
+}
+
+/// How a search for the least residual ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Termination {
+    /// The last step gained next to nothing.
+    Converged,
+    /// No step, however damped, leaves less.
+    Stalled,
+    /// The number of iterations ran out while steps still gained.
+    IterationLimit,
 }
 
 /// The axes of a model's values about `values`.
@@ -133,9 +147,6 @@ pub fn is_at_limit(term: &Term, trials: usize, values: &[f64], excitation: &Exci
     })
 }
 
-/// Share of its scale by which a value is moved to see what it does.
-const DIFFERENCE_STEP: f64 = 1e-4;
-
 /// Columns of derivatives of the whitened residual, by the free values that are not held by a bound.
 #[must_use]
 pub fn jacobian(
@@ -182,12 +193,6 @@ pub fn affected_channels(model: &Model, at: usize) -> Channels {
     }
 }
 
-/// Steps at most.
-const MAX_ITERATIONS: usize = 40;
-
-/// Damping beyond which no step is left to try.
-const MAX_DAMPING: f64 = 1e6;
-
 /// The values that leave the least, searched from `start`.
 #[must_use]
 pub fn fit(data: &FitData<'_>, model: &Model, start: &[f64], excitation: &ExcitationStats) -> FitResult {
@@ -209,17 +214,23 @@ fn search(data: &FitData<'_>, model: &Model, start: &[f64], excitation: &Excitat
     let anchor = GaussianPrior::of(model, &values, &axes, hold);
     let left = energy(&base) + anchor.energy(&values);
     let mut search = Iteration { data, model, values, base, energy: left, damping: 1e-3, anchor };
+    let mut termination = Termination::IterationLimit;
     for _ in 0..MAX_ITERATIONS {
         for (axis, fresh) in axes.iter_mut().zip(self::parameter_bounds(model, &search.values, excitation)) {
             // A scale that follows its value to nothing would end the search there.
             axis.scale = fresh.scale.max(0.05 * axis.scale);
         }
         let before = search.energy;
-        if !search.step(&axes) || before - search.energy <= 1e-6 * search.energy + 1e-3 {
+        if !search.step(&axes) {
+            termination = Termination::Stalled;
+            break;
+        }
+        if before - search.energy <= 1e-6 * search.energy + 1e-3 {
+            termination = Termination::Converged;
             break;
         }
     }
-    FitResult { energy: search.energy - search.anchor.energy(&search.values), values: search.values }
+    FitResult { energy: search.energy - search.anchor.energy(&search.values), values: search.values, termination }
 }
 
 /// Where values are held, and how firmly.
@@ -229,10 +240,6 @@ pub struct GaussianPrior {
     /// Energy of a unit away from there.
     pub weight: Vec<f64>,
 }
-
-/// Energy that a clock's fraction of a sample costs at its bound: it is not to move for nothing, for a damper does nearly
-/// the same.
-const TIMING_PENALTY: f64 = 9.0;
 
 impl GaussianPrior {
     /// Clocks at zero; values of effects at `values`, where `hold` is the energy of one that moved by its scale.

@@ -2,10 +2,8 @@
 
 use super::levenberg_marquardt::FitData;
 use crate::diagnose::model::{Model, index};
+use crate::diagnose::thresholds::periodogram::MAX_FREQUENCIES;
 use crate::effects::{Abscissa, FrequencySearch, Start, ToneWeight, gate};
-
-/// Frequencies that are tried in full.
-const MAX_FREQUENCIES: usize = 3;
 
 /// The loudest of `tones` in the whitened residual `base` of `model`.
 pub fn strongest(

@@ -6,6 +6,7 @@ use super::levenberg_marquardt::{self, FitData, GaussianPrior, ParameterBounds};
 use super::periodogram;
 use crate::diagnose::linalg::{dot, energy, remove, solve};
 use crate::diagnose::model::{Channels, Model, Term};
+use crate::diagnose::thresholds::projection::MIN_ORTHOGONAL_FRACTION;
 use crate::effects::{self, ExcitationStats, Start, linear};
 
 /// The best that one effect can do.
@@ -32,9 +33,6 @@ pub struct ProjectedResidual<'a> {
     /// By how much the model's values would have to move to leave the least.
     pub shift: Vec<f64>,
 }
-
-/// Share of a direction that must not be the model's own, for it to be told from it.
-const MIN_ORTHOGONAL_FRACTION: f64 = 1e-5;
 
 impl<'a> ProjectedResidual<'a> {
     /// Of `model` at `values`.

@@ -6,6 +6,7 @@ use super::residual_tests::{self, ResidualTest};
 use super::whitener::Whitener;
 use crate::diagnose::model::{Channels, Model, Term};
 use crate::diagnose::signals::filtered_trial::AnalysisTrial;
+use crate::diagnose::thresholds::residual_summary::MAX_PROMISING;
 use crate::effects::ExcitationStats;
 
 /// What a model leaves of one set of trials, a recording or a twin.
@@ -24,9 +25,6 @@ pub struct ResidualSummary {
     /// By how much the model's values would have to move to fit these trials best.
     pub shift: Vec<f64>,
 }
-
-/// Effects that are worth a closer look, on the recording and on its twins.
-const MAX_PROMISING: usize = 16;
 
 impl ResidualSummary {
     /// The scores that are worth a closer look, the greatest first.

@@ -9,12 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::diagnose::linalg::{dot, energy};
 use crate::diagnose::model::Residual;
 use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
-
-/// Order of the predictor.
-const AR_ORDER: usize = 8;
-
-/// Power over the noise's up to which a residual tells its own memory.
-const OWN_AUTOCORRELATION_POWER_RATIO: f64 = 2.0;
+use crate::diagnose::thresholds::whitener::{AR_ORDER, OWN_AUTOCORRELATION_POWER_RATIO};
 
 /// The floor of one channel over all trials.
 #[derive(Debug, Clone)]

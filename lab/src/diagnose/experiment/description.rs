@@ -6,16 +6,8 @@ use super::synthetic_rig::SyntheticRig;
 use super::{DECISIVE_CHI2, InformationRate, TriedMotion};
 use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::model::{Model, Term};
+use crate::diagnose::thresholds::experiment_description::{IDEAL_SENSOR_RATIO, MIN_RATE, MIN_RMS_OVER_NOISE};
 use crate::page::quantity::{rounded, seconds};
-
-/// Rates below this one are not set against that of the recordings: a ratio of two nothings.
-const MIN_RATE: f64 = 1e-3;
-
-/// Share of the noise below which a residual is not quoted.
-const MIN_RMS_OVER_NOISE: f64 = 0.05;
-
-/// Share of the greatest force, or effort, below which a noise is that of ideal sensors.
-const IDEAL_SENSOR_RATIO: f64 = 1e-7;
 
 /// The text of an experiment.
 pub(super) fn text(

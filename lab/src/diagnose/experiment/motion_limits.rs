@@ -4,6 +4,7 @@ use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::model::{Model, index};
 use crate::diagnose::signals::derivative_filter::DerivativeFilter;
 use crate::diagnose::signals::filtered_trial::FilteredTrial;
+use crate::diagnose::thresholds::experiment_motion_limits::{MIN_RANGE_FRACTION, PASSBAND_FRACTION, PEAK_NOISE_SIGMAS};
 
 /// What the recordings did: an experiment that stays within it asks nothing of the rig that it has not borne.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,15 +28,6 @@ pub struct MotionLimits {
     /// Highest frequency that the analysis sees whole, Hz.
     pub band: f64,
 }
-
-/// Deviations of its noise by which a peak is lowered before it counts as reached.
-const PEAK_NOISE_SIGMAS: f64 = 4.0;
-
-/// Share of the reach of a recording below which a depth, or free space, is none.
-const MIN_RANGE_FRACTION: f64 = 0.02;
-
-/// Share of the analysis' corner frequency below which a sine passes it nearly whole.
-const PASSBAND_FRACTION: f64 = 0.6;
 
 impl MotionLimits {
     /// Of the recordings of `problem`, touching as `model` with `values` says; `None` where nothing moved.

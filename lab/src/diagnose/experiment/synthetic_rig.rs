@@ -7,6 +7,7 @@ use crate::diagnose::estimation::whitener::{NoiseModel, Whitener};
 use crate::diagnose::model::index;
 use crate::diagnose::signals::derivative_filter::DerivativeFilter;
 use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
+use crate::diagnose::thresholds::experiment_synthetic_rig::{LOAD_MARGIN, MAX_EFFORT_ITERATIONS};
 
 /// Where motions are tried.
 pub struct SyntheticRig<'a> {
@@ -17,12 +18,6 @@ pub struct SyntheticRig<'a> {
     /// Rows of each channel's track that are worth one.
     pub(super) memory: [f64; 2],
 }
-
-/// Steps in which the effort is found that a motion takes.
-const MAX_EFFORT_ITERATIONS: usize = 30;
-
-/// Growth of the greatest force, or effort, that is no harm.
-const LOAD_MARGIN: f64 = 1.15;
 
 impl<'a> SyntheticRig<'a> {
     /// A bench on which `answer` is the truth, its sensors as good as the floors of `whitener` say.

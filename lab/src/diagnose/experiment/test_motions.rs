@@ -2,6 +2,7 @@
 
 use super::motion_limits::MotionLimits;
 use super::trajectory::Trajectory;
+use crate::diagnose::thresholds::experiment_test_motions::{HOLD_FRACTION, SINE_FRACTION};
 
 /// A motion and what it is.
 #[derive(Debug, Clone)]
@@ -25,12 +26,6 @@ impl TestMotion {
         motion(format!("{}, {count} times over", self.what), self.course.times(count))
     }
 }
-
-/// Share of the longest recording that a hold takes.
-const HOLD_FRACTION: f64 = 1.0 / 16.0;
-
-/// Share of it in which sines of one frequency go on.
-const SINE_FRACTION: f64 = 1.0 / 10.0;
 
 /// Every motion that has a place in `room`.
 #[must_use]

@@ -1,18 +1,10 @@
 //! A motion in closed form, piece by piece: position, velocity and acceleration without a filter between.
 
 use super::motion_limits::MotionLimits;
+use crate::diagnose::thresholds::experiment_trajectory::{FADE_CYCLES, MAX_MOVE_FRACTION, SAMPLES_PER_CYCLE};
 
 /// Rate of a smooth move of one length in one second at its quickest, and its greatest acceleration.
 const QUINTIC_PEAKS: (f64, f64) = (1.875, 5.773_502_691_896_258);
-
-/// Instants a turn at which a wave is held against the limits.
-const SAMPLES_PER_CYCLE: usize = 64;
-
-/// Share of the longest recording that a move may take, be it ever so slow.
-const MAX_MOVE_FRACTION: f64 = 0.1;
-
-/// Turns over which a wave grows, and over which it fades.
-const FADE_CYCLES: f64 = 1.0;
 
 /// A stretch of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]

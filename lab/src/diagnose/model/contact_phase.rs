@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::diagnose::model::Model;
 use crate::diagnose::signals::filtered_trial::FilteredTrial;
+use crate::diagnose::thresholds::contact_phase::{ANTICIPATION_WIDTHS, HOLD_SPEED_FRACTION, TRANSITION_WIDTHS};
 
 /// Phase of contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -22,15 +23,6 @@ pub enum Phase {
     /// The last moments of a contact.
     Release,
 }
-
-/// Widths of the smoothing filter that an onset and a release last.
-const TRANSITION_WIDTHS: f64 = 8.0;
-
-/// Widths by which they begin before the surface is reached: the filter sees the touch coming.
-const ANTICIPATION_WIDTHS: f64 = 3.0;
-
-/// Speed, over that of the motion in contact, below which the tool is held.
-const HOLD_SPEED_FRACTION: f64 = 0.1;
 
 /// The phase of each row of `filtered`, for trial `trial` of `model` with `values`; `speed` is the usual one in contact.
 #[must_use]

@@ -113,13 +113,23 @@ fn findings(parts: &DiagnosisInputs<'_>, fitted_model: &FittedModel) -> Vec<Find
              up to {:.1} times the floor is not told from rounding. A finer encoder would show what is below.",
             doubt.sqrt()
         );
-        findings.push(Finding { grave: false, place: "position".to_owned(), text });
+        findings.push(Finding {
+            code: "quantization_limits_residual",
+            grave: false,
+            place: "position".to_owned(),
+            text,
+        });
     }
     let relaxes = parts.assessment.named.iter().any(|named| named.term.name() == "stress_relaxation");
     if relaxes && fitted_model.excitation.releases == 0 && !fitted_model.excitation.has_effort {
         let text = "The tool never leaves the surface and no effort was recorded: a force sensor that follows slowly (force_lag) would \
                     show what is named stress_relaxation here. Record how the force fades after a release.";
-        findings.push(Finding { grave: false, place: "motion".to_owned(), text: text.to_owned() });
+        findings.push(Finding {
+            code: "relaxation_or_force_lag",
+            grave: false,
+            place: "motion".to_owned(),
+            text: text.to_owned(),
+        });
     }
     findings
 }

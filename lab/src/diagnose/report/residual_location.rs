@@ -8,6 +8,7 @@ use crate::diagnose::bootstrap::fitted_model::FittedModel;
 use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::model::contact_phase;
 use crate::diagnose::model::{Model, Residual};
+use crate::diagnose::thresholds::residual_location::{BINS, MAX_LOCATIONS, MIN_LOCATION_SHARE};
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
@@ -26,15 +27,6 @@ pub struct ChannelResiduals<'a> {
     phases: Vec<Vec<Phase>>,
     depths: Vec<Vec<f64>>,
 }
-
-/// Places that are told.
-const MAX_LOCATIONS: usize = 6;
-
-/// Least share of a place that is told.
-const MIN_LOCATION_SHARE: f64 = 0.05;
-
-/// Bins along a quantity.
-const BINS: usize = 8;
 
 impl<'a> ChannelResiduals<'a> {
     /// A channel of `problem` with `before` and `after` left by two models; `None` where it is not there.

@@ -8,10 +8,8 @@ use crate::diagnose::estimation::levenberg_marquardt::{self, FitData};
 use crate::diagnose::estimation::whitener::Whitener;
 use crate::diagnose::linalg::energy;
 use crate::diagnose::model::{Channels, Model, Residual};
+use crate::diagnose::thresholds::cross_validation::FOLD_SEGMENTS;
 use crate::effects::{ExcitationStats, Place};
-
-/// Stretches a trial is cut into.
-const FOLD_SEGMENTS: f64 = 10.0;
 
 /// What a model leaves of data that its fit did not see.
 #[derive(Debug, Clone)]

@@ -10,6 +10,11 @@ use crate::diagnose::estimation::levenberg_marquardt::{self, FitData};
 use crate::diagnose::estimation::projection::{EffectScore, ProjectedResidual};
 use crate::diagnose::estimation::residual_summary::ResidualSummary;
 use crate::diagnose::model::{Model, Term};
+use crate::diagnose::thresholds::forward_selection::{
+    CONVINCING_FRACTION, MAX_CROSS_VALIDATED, MAX_EFFECTS, MAX_REPLICATES, MIN_EFFECT_RMS_FRACTION, MIN_GAIN_FRACTION,
+    MIN_REFINED_FORM_GAIN, MIN_REMAINING_FRACTION, RECONVERGENCE_RATIO, REPLICATE_ROW_BUDGET, SUFFICIENT_POWER_RATIO,
+};
+pub use crate::diagnose::thresholds::forward_selection::{FALSE_ALARM_RATE, REPLACEMENT_CHI2_MARGIN};
 use crate::effects::Stage;
 
 /// An effect that was tried on a stand: fitted in full, and judged on data it did not see.
@@ -66,29 +71,6 @@ pub struct SelectionPath {
     pub rounds: Vec<SelectionStep>,
 }
 
-/// Twins a stand is judged by, and the rows that many of them can have.
-const MAX_REPLICATES: usize = 40;
-const REPLICATE_ROW_BUDGET: f64 = 1.2e6;
-
-/// Effects at most.
-const MAX_EFFECTS: usize = 4;
-
-/// Candidates that are judged on held-out data.
-const MAX_CROSS_VALIDATED: usize = 8;
-
-/// Probability of a false alarm on a stand.
-pub const FALSE_ALARM_RATE: f64 = 0.002;
-
-/// Least size of an effect: share of the residual's root mean square, in a channel it reaches, on data that its fit did not
-/// see.
-const MIN_EFFECT_RMS_FRACTION: f64 = 0.2;
-
-/// Share of the energy from which an effect is believed, whatever the encoder's steps may leave of force and of effort.
-const CONVINCING_FRACTION: [f64; 2] = [0.25, 0.05];
-
-/// Least share of the energy above the floor that a further effect has to take.
-const MIN_GAIN_FRACTION: f64 = 0.12;
-
 /// Runs the search, telling `say` how it goes.
 pub fn search(problem: &IdentificationProblem, say: &dyn Fn(&str)) -> SelectionPath {
     let mut model = problem.nominal.clone();
@@ -113,12 +95,6 @@ pub fn search(problem: &IdentificationProblem, say: &dyn Fn(&str)) -> SelectionP
     }
     SelectionPath { rounds }
 }
-
-/// Energy, beside the price of its parameters, that a rival or a finer form has to take to stand in a term's place.
-pub const REPLACEMENT_CHI2_MARGIN: f64 = 8.0;
-
-/// Share of what lies above the floor that a finer form has to take.
-const MIN_REFINED_FORM_GAIN: f64 = 0.25;
 
 /// Model and values of `candidate`, or of a finer form of its effect that does better.
 fn refine_form(
@@ -146,13 +122,6 @@ fn refine_form(
     let best = better.min_by(|a, b| a.2.energy.total_cmp(&b.2.energy));
     best.map_or_else(|| (candidate.model.clone(), candidate.values.clone()), |(_, model, fit)| (model, fit.values))
 }
-
-/// Power over the floor's that is left once something is named, below which nothing further is looked for: a residual five
-/// per cent above what the sensors leave.
-const SUFFICIENT_POWER_RATIO: f64 = 1.1;
-
-/// Share of the power that the first effects took, below which what is left is the difference between a law and nature.
-const MIN_REMAINING_FRACTION: f64 = 0.005;
 
 /// Whether what `round` leaves is worth another effect.
 fn is_worth_more(problem: &IdentificationProblem, before: &[SelectionStep], round: &SelectionStep) -> bool {
@@ -187,9 +156,6 @@ fn replicate_count(problem: &IdentificationProblem) -> usize {
     let rows: usize = problem.sampler.trials.iter().map(|trial| trial.contact.len() + trial.drive.len()).sum();
     ((REPLICATE_ROW_BUDGET / rows.max(1) as f64) as usize).clamp(16, MAX_REPLICATES)
 }
-
-/// Energy over that of the stand's own values below which they were not the best.
-const RECONVERGENCE_RATIO: f64 = 0.97;
 
 /// Better values of the round's own model, where what its candidates made of them shows that there are any: a null that has
 /// not converged is evidence for whatever moves it on.

@@ -11,6 +11,11 @@ use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::estimation::levenberg_marquardt::{self, FitData, FitResult};
 use crate::diagnose::estimation::projection::ProjectedResidual;
 use crate::diagnose::model::{Model, Term, index};
+use crate::diagnose::thresholds::verdict::{
+    ALTERNATIVE_CHI2_MARGIN, ALTERNATIVE_REL_MARGIN, MAX_FITTED_ALTERNATIVES, MAX_RMS_OVER_NOISE, MIN_EXCESS_FRACTION,
+    MIN_EXPLAINED_FRACTION, MIN_SUPPORT, MIN_SUPPORT_FAR_FROM_NOISE, STRUCTURE_POWER_RATIO, WORSE_RMS_RATIO,
+    WRONG_VALUE_RMS_RATIO,
+};
 use crate::effects::Place;
 
 /// What came out.
@@ -80,41 +85,6 @@ pub struct FittedAlternative {
     /// Energy that it takes by chance, beyond what the effect that it would stand for takes by chance.
     pub chance: f64,
 }
-
-/// Share of the energy above the floor that named effects have to take where something is left beside them.
-const MIN_EXPLAINED_FRACTION: f64 = 0.7;
-
-/// Least excess of energy, over what twins leave, that is called structure.
-const MIN_EXCESS_FRACTION: f64 = 0.015;
-
-/// Least power over the floor's that is called structure: a residual a seventh above what the sensors leave. What a contact
-/// begins and ends with is only known to about a tenth.
-const STRUCTURE_POWER_RATIO: f64 = 1.3;
-
-/// Root mean square over the floor's beyond which something is left, whatever its pattern.
-const MAX_RMS_OVER_NOISE: f64 = 2.0;
-
-/// Growth of the root mean square from refitted to given values that is called a wrong value.
-const WRONG_VALUE_RMS_RATIO: f64 = 1.05;
-
-/// Growth of the root mean square on unseen data in either channel that no explanation may bring.
-const WORSE_RMS_RATIO: f64 = 1.05;
-
-/// Share of what is left without it on unseen data, of its power or of its whitened energy above what twins leave, that an effect
-/// beside others has to take where structure is left.
-const MIN_SUPPORT: f64 = 0.25;
-
-/// The same of its power where much is left: it has to halve it.
-const MIN_SUPPORT_FAR_FROM_NOISE: f64 = 0.5;
-
-/// Energy by which a rival may stand behind, for chance: 12 of a white energy is a probability of 5e-4 for one value.
-const ALTERNATIVE_CHI2_MARGIN: f64 = 12.0;
-
-/// Share of an effect's own energy by which a rival may stand behind: laws are never quite those of nature.
-const ALTERNATIVE_REL_MARGIN: f64 = 0.06;
-
-/// Rivals that are fitted in full.
-const MAX_FITTED_ALTERNATIVES: usize = 10;
 
 /// Judges `search`; exchanges an effect for a rival that does better.
 pub fn assess(problem: &IdentificationProblem, search: &mut SelectionPath, say: &dyn Fn(&str)) -> Option<Assessment> {

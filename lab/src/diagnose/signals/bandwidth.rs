@@ -4,14 +4,8 @@ use super::derivative_filter::DerivativeFilter;
 use super::filtered_trial::FilteredTrial;
 use super::uniform_trial::UniformTrial;
 use crate::diagnose::linalg::solve;
+use crate::diagnose::thresholds::bandwidth::{BANDWIDTH_STEP, INERTIA_TOLERANCE, MIN_CUTOFF_PERIODS};
 use crate::rig::Rig;
-
-/// How much less sharply the drive is looked at once more, and the share by which its inertia may differ then.
-const BANDWIDTH_STEP: f64 = 1.4;
-const INERTIA_TOLERANCE: f64 = 0.05;
-
-/// Periods of the -3 dB frequency that all trials together have at the least: fewer tell no inertia.
-const MIN_CUTOFF_PERIODS: f64 = 10.0;
 
 /// The filters for the contact and for the drive.
 #[must_use]

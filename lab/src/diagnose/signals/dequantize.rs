@@ -5,8 +5,7 @@
 //! such instants the motion is taken as a cubic. Where the reading steps at every row there is nothing to gain, and the
 //! reading stays as it is.
 
-/// Rows on one count from which its ends tell more than its height.
-const MIN_ROWS_ON_COUNT: usize = 3;
+use crate::diagnose::thresholds::dequantize::MIN_ROWS_ON_COUNT;
 
 /// A stretch of rows on one count.
 #[derive(Debug, Clone, Copy)]

@@ -9,6 +9,11 @@
 
 use super::uniform_trial::UniformTrial;
 use crate::diagnose::linalg::dot;
+use crate::diagnose::thresholds::derivative_filter::{
+    AMPLE_ROWS, CARRIED_MASS_FRACTION, CUTOFF_FRACTION_UNKNOWN_INERTIA, CUTOFF_OVER_TONE, HALF_WIDTH_SIGMAS,
+    MAX_ACCELERATION_NOISE_RATIO, MAX_CASCADE_RATIO, MAX_CUTOFF_OVER_RATE, MAX_POSITION_NOISE_RATIO,
+    MIN_ROWS_FOR_CASCADE, ROW_BUDGET, ROWS_PER_CUTOFF_PERIOD,
+};
 use crate::rig::Rig;
 
 /// The filter and the clock of the analysis.
@@ -44,43 +49,6 @@ pub struct CascadedFilter {
 
 /// Width of a Gaussian whose -3 dB frequency is f: `CUTOFF_TIMES_WIDTH / f`.
 const CUTOFF_TIMES_WIDTH: f64 = 0.132_5;
-
-/// Greatest share of the rate that is looked at.
-const MAX_CUTOFF_OVER_RATE: f64 = 0.2;
-
-/// Rows of the analysis a period of the -3 dB frequency. The Gaussian is down to a ninth where they alias.
-const ROWS_PER_CUTOFF_PERIOD: f64 = 5.0;
-
-/// Deviation that position noise may add to the predicted force, over that of the force noise. A coarse encoder hides
-/// true motion below its step, which the drive's answer to its own steps makes: what cannot be seen is smoothed away.
-const MAX_POSITION_NOISE_RATIO: f64 = 0.6;
-
-/// Part of the drive's inertia that may be carried beyond the force sensor or with the surface, and the deviation that
-/// noise of its acceleration may add, over that of the force noise. The drive shakes the tool by less than a step of the
-/// encoder; a mass feels that, and seen through the steps it seems lighter than it is.
-const CARRIED_MASS_FRACTION: f64 = 0.05;
-const MAX_ACCELERATION_NOISE_RATIO: f64 = 0.05;
-
-/// Share of the sharpest filter that noise allows where nobody says how heavy the drive is.
-const CUTOFF_FRACTION_UNKNOWN_INERTIA: f64 = 0.3;
-
-/// Widths after which the Gaussian ends: 3e-4 of its peak.
-const HALF_WIDTH_SIGMAS: f64 = 4.0;
-
-/// Rows of the analysis that all trials together should have, unless that would blind it.
-const ROW_BUDGET: f64 = 9_000.0;
-
-/// Rows of all trials together beyond which a quicker clock tells nothing of how sharp the least filter may be.
-const AMPLE_ROWS: f64 = 60_000.0;
-
-/// Rows below which none are given up for a law to act between two filters.
-const MIN_ROWS_FOR_CASCADE: f64 = 1_000.0;
-
-/// How much sharper laws may look than the rows that are kept of what they leave.
-const MAX_CASCADE_RATIO: f64 = 3.0;
-
-/// Share of a tone's frequency at which the filter that has to show it ends: a third of it passes.
-const CUTOFF_OVER_TONE: f64 = 0.6;
 
 /// The frequency down to which the force has to be looked at for a tone that stands out of it.
 fn min_cutoff_for_tone(uniform_trials: &[UniformTrial]) -> f64 {

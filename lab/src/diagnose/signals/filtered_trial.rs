@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::derivative_filter::{CascadedFilter, DerivativeFilter};
 use super::uniform_trial::UniformTrial;
+use crate::diagnose::thresholds::filtered_trial::AT_REST_SIGMAS;
 
 /// A smoothed trial. All columns are of equal length.
 #[derive(Debug, Clone)]
@@ -97,9 +98,6 @@ impl AnalysisTrial {
         if effort { &self.drive } else { &self.contact }
     }
 }
-
-/// Deviations of noise within which a velocity counts as none.
-const AT_REST_SIGMAS: f64 = 3.0;
 
 impl FilteredTrial {
     /// Looks at `raw` through `filter`.

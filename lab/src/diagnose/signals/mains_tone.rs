@@ -1,21 +1,9 @@
 //! A tone of the mains in the force, before anything is smoothed: it is no noise, and a filter that ends below it hides it.
 
 use super::uniform_trial::UniformTrial;
-
-/// Frequencies of mains, Hz.
-const MAINS_HZ: [f64; 2] = [50.0, 60.0];
-
-/// Share by which mains may be off their frequency.
-const MAINS_FREQUENCY_TOLERANCE: f64 = 0.004;
-
-/// Share within which the rest of the spectrum is what the tone is held against.
-const BACKGROUND_FRACTION: f64 = 0.06;
-
-/// Power of a tone over the mean around it. Noise comes to it once in e^40 frequencies.
-const TONE_POWER_RATIO: f64 = 40.0;
-
-/// Fewest turns of the mains that tell a tone.
-const MIN_CYCLES: f64 = 40.0;
+use crate::diagnose::thresholds::mains_tone::{
+    BACKGROUND_FRACTION, MAINS_FREQUENCY_TOLERANCE, MAINS_HZ, MIN_CYCLES, TONE_POWER_RATIO,
+};
 
 /// A tone in one trial.
 #[derive(Debug, Clone, Copy, PartialEq)]

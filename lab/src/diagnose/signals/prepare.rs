@@ -5,6 +5,7 @@ use anyhow::{Result, ensure};
 use super::bandwidth::analysis_filters;
 use super::mains_tone;
 use super::uniform_trial::UniformTrial;
+use crate::diagnose::thresholds::prepare::{MIN_TRIAL_ROWS, ROWS_PER_CUTOFF_PERIOD};
 use crate::error::{InputError, UsageError};
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -33,10 +34,6 @@ fn without_mains_tone(rig: &Rig, raw: UniformTrial, trial: &Recording) -> Unifor
     UniformTrial { figures: Figures::of(rig, &quiet), hum: Some(tone.frequency), ..raw }
 }
 
-/// Rows that are looked at, a period of the sharpest filter's -3 dB frequency: their mean takes 0.4 % there, of all channels
-/// alike.
-const ROWS_PER_CUTOFF_PERIOD: f64 = 20.0;
-
 /// `uniform_trials` at a rate that the filters need: twins of a million rows would show nothing that those of their means do not.
 pub fn decimate_to_need(rig: &Rig, uniform_trials: Vec<UniformTrial>) -> Vec<UniformTrial> {
     let (contact, drive) = analysis_filters(rig, &uniform_trials);
@@ -54,9 +51,6 @@ pub fn decimate_to_need(rig: &Rig, uniform_trials: Vec<UniformTrial>) -> Vec<Uni
 pub fn common_period(trials: &[Recording]) -> f64 {
     trials.iter().map(Recording::period).fold(0.0, f64::max)
 }
-
-/// Fewest rows of a trial: below them no filter has settled.
-const MIN_TRIAL_ROWS: usize = 32;
 
 /// Refuses trials that nothing can be told of.
 ///

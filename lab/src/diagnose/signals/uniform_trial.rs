@@ -1,6 +1,7 @@
 //! A trial on an even clock, as the analysis takes it in.
 
 use super::dequantize::dequantize;
+use crate::diagnose::thresholds::uniform_trial::{GAP_PERIODS, GAP_RECOVERY_LENGTHS};
 use crate::recording::Recording;
 use crate::sensors::Figures;
 
@@ -30,12 +31,6 @@ pub struct UniformTrial {
     /// Start and length of each gap, s.
     pub gaps: Vec<(f64, f64)>,
 }
-
-/// Lengths of a gap until its end is trusted again: what happened in it nobody saw, and a contact remembers.
-const GAP_RECOVERY_LENGTHS: f64 = 3.0;
-
-/// Periods without a row that make a gap.
-const GAP_PERIODS: f64 = 3.5;
 
 impl UniformTrial {
     /// Brings `recording` onto a clock of `period` seconds by straight lines between its rows.

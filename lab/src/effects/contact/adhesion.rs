@@ -78,17 +78,17 @@ impl Effect for Adhesion {
         heights.map(|height| Start::sized(&[force, height], &[0])).collect()
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
         if touch.bilateral {
             return;
         }
-        // memory: whether the surface holds on.
+        // state: whether the surface holds on.
         if touch.position > 0.0 {
-            memory[0] = 1.0;
+            state[0] = 1.0;
         } else if touch.position < -values[1] {
-            memory[0] = 0.0;
+            state[0] = 0.0;
         }
-        if memory[0] == 0.0 {
+        if state[0] == 0.0 {
             return;
         }
         if form == 1 {

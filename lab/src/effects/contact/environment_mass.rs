@@ -59,7 +59,7 @@ impl Effect for EnvironmentMass {
         [0.03, 0.1, 0.3].iter().map(|part| Start::sized(&[mass, part * scene.depth], &[0])).collect()
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         if form == 0 {
             touch.extra += values[0] * touch.acceleration * touch.inside;
         } else if touch.depth > 0.0 && values[1] > 0.0 {

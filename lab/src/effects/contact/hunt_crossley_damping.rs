@@ -65,7 +65,7 @@ impl Effect for HuntCrossleyDamping {
         [0.5, 1.5, 2.0].iter().map(|exponent| Start::sized(&[there, *exponent, scene.depth], &[0])).collect()
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         let depth = touch.depth.abs();
         touch.extra += touch.rate
             * if form == 0 {

@@ -73,32 +73,32 @@ impl Effect for Hysteresis {
         travels.iter().map(start).collect()
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
-        // memory: depth an instant ago, z of each spring.
-        let moved = touch.depth - memory[0];
-        memory[0] = touch.depth;
+    fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
+        // state: depth an instant ago, z of each spring.
+        let moved = touch.depth - state[0];
+        state[0] = touch.depth;
         let travel = values[1].max(f64::MIN_POSITIVE);
         // What was strained is at rest again when the tool comes back.
         if touch.inside <= 0.0 || touch.step <= 0.0 {
-            memory[1..].fill(0.0);
+            state[1..].fill(0.0);
             return;
         }
         let strain = match form {
             0 => {
-                memory[1] = (memory[1] + moved / travel).clamp(-1.0, 1.0);
-                memory[1]
+                state[1] = (state[1] + moved / travel).clamp(-1.0, 1.0);
+                state[1]
             }
             1 => {
-                memory[1] = bouc_wen(memory[1], moved / travel, values[2]);
-                memory[1]
+                state[1] = bouc_wen(state[1], moved / travel, values[2]);
+                state[1]
             }
             _ => {
                 let middle = 0.5 * (JENKIN_ELEMENTS - 1) as f64;
-                for (at, spring) in memory[1..=JENKIN_ELEMENTS].iter_mut().enumerate() {
+                for (at, spring) in state[1..=JENKIN_ELEMENTS].iter_mut().enumerate() {
                     let reach = travel * values[2].powf((at as f64 - middle) / middle);
                     *spring = (*spring + moved / reach).clamp(-1.0, 1.0);
                 }
-                memory[1..=JENKIN_ELEMENTS].iter().sum::<f64>() / JENKIN_ELEMENTS as f64
+                state[1..=JENKIN_ELEMENTS].iter().sum::<f64>() / JENKIN_ELEMENTS as f64
             }
         };
         touch.extra += values[0] * strain * touch.inside;

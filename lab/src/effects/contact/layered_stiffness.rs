@@ -71,7 +71,7 @@ impl Effect for LayeredStiffness {
         depths.map(|depth| Start::sized(&[added, depth, 0.05 * scene.depth], &[0])).collect()
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         if form == 1 {
             let transition = values[2].max(f64::MIN_POSITIVE);
             let rest = rounded(-values[1], transition);

@@ -37,30 +37,30 @@ impl Effect for LostMotion {
         geometric(0.003 * scene.depth, 0.8 * scene.depth, 8).iter().map(|play| Start::at(&[*play])).collect()
     }
 
-    fn act_on_contact(&self, _form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
-        // memory: tip position, whether it is known, sensor position an instant ago, where the tip last rested, velocity an
+    fn act_on_contact(&self, _form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
+        // state: tip position, whether it is known, sensor position an instant ago, where the tip last rested, velocity an
         // instant ago.
         let half = 0.5 * values[0];
-        if memory[1] == 0.0 {
-            (memory[0], memory[1], memory[2], memory[3]) = (touch.position, 1.0, touch.position, touch.position);
+        if state[1] == 0.0 {
+            (state[0], state[1], state[2], state[3]) = (touch.position, 1.0, touch.position, touch.position);
         }
-        let before = memory[0];
-        memory[0] = before.max(touch.position - half).min(touch.position + half);
-        let whole = touch.position - memory[2];
-        memory[2] = touch.position;
-        if memory[0] == before || touch.velocity * memory[4] < 0.0 {
-            memory[3] = memory[0];
+        let before = state[0];
+        state[0] = before.max(touch.position - half).min(touch.position + half);
+        let whole = touch.position - state[2];
+        state[2] = touch.position;
+        if state[0] == before || touch.velocity * state[4] < 0.0 {
+            state[3] = state[0];
         }
-        memory[4] = touch.velocity;
+        state[4] = touch.velocity;
         if touch.filter_width > 0.0 {
-            follow(half, memory[3], touch);
+            follow(half, state[3], touch);
             return;
         }
         // A motion that takes up the play within one step follows for the rest of it. Both are ways over the step: against
         // velocity times step a tip without play would fall short wherever the motion speeds up.
-        let share = if whole != 0.0 { ((memory[0] - before) / whole).clamp(0.0, 1.0) } else { 1.0 };
+        let share = if whole != 0.0 { ((state[0] - before) / whole).clamp(0.0, 1.0) } else { 1.0 };
         touch.velocity *= share;
-        touch.position = memory[0];
+        touch.position = state[0];
     }
 }
 

@@ -76,7 +76,7 @@ impl Effect for NonlinearStiffness {
         vec![Start::sized(&[0.1 * scene.stiffness / scene.depth.powi(2)], &[0])]
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         let depth = touch.depth.abs();
         if form == 0 {
             let (exponent, reference) = (values[0], values[1]);

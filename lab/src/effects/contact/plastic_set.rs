@@ -66,10 +66,10 @@ impl Effect for PlasticSet {
             .collect()
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
         let spared = if form == 0 { 0.0 } else { values[1] };
-        memory[0] = memory[0].max(touch.position);
-        let dent = values[0] * (memory[0] - spared).max(0.0);
+        state[0] = state[0].max(touch.position);
+        let dent = values[0] * (state[0] - spared).max(0.0);
         touch.position -= dent;
         touch.enter();
     }

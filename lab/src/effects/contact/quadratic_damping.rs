@@ -65,7 +65,7 @@ impl Effect for QuadraticDamping {
         [1.5, 1.8, 2.2, 3.0].iter().map(|exponent| Start::sized(&[drag, *exponent, speed], &[0])).collect()
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         let speed = touch.velocity.abs();
         touch.extra += touch.rate
             * if form == 0 {

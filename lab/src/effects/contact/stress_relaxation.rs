@@ -43,14 +43,14 @@ impl Effect for StressRelaxation {
         times.iter().map(|time| Start::sized(&[size, *time], &[0])).collect()
     }
 
-    fn act_on_contact(&self, _form: usize, values: &[f64], memory: &mut EffectState, touch: &mut ContactState) {
-        // memory: depth an instant ago, whether there was one, then the branch.
-        let moved = if memory[1] == 0.0 { 0.0 } else { touch.depth - memory[0] };
-        (memory[0], memory[1]) = (touch.depth, 1.0);
+    fn act_on_contact(&self, _form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
+        // state: depth an instant ago, whether there was one, then the branch.
+        let moved = if state[1] == 0.0 { 0.0 } else { touch.depth - state[0] };
+        (state[0], state[1]) = (touch.depth, 1.0);
         let (stiffness, time) = (values[0], values[1]);
         let ratio = if time > 0.0 { touch.step / time } else { f64::INFINITY };
         let mean = if ratio > 0.0 { -(-ratio).exp_m1() / ratio } else { 1.0 };
-        memory[2] = memory[2] * (-ratio).exp() + stiffness * moved * mean;
-        touch.extra += memory[2];
+        state[2] = state[2] * (-ratio).exp() + stiffness * moved * mean;
+        touch.extra += state[2];
     }
 }

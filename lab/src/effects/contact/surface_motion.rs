@@ -74,7 +74,7 @@ impl Effect for SurfaceMotion {
         })
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         let (moved, rate) = if form == 0 {
             let pulse = TAU * values[2];
             let (sine, cosine) = (pulse * touch.time).sin_cos();

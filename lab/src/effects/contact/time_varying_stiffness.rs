@@ -88,7 +88,7 @@ impl Effect for TimeVaryingStiffness {
         })
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _memory: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         let time = touch.time;
         touch.stiffness *= 1.0
             + match form {

@@ -159,10 +159,10 @@ impl Effect for Backlash {
         Some(all)
     }
 
-    fn act_on_drive(&self, _form: usize, values: &[f64], memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], state: &mut EffectState, push: &mut DriveState) {
         // Flanks that ring three times.
         let motor = values[1] * push.inertia;
         let damping = 0.6 * (values[2] * motor).max(0.0).sqrt();
-        TwoMassLink { stiffness: values[2], damping, inertia: motor, viscous: 0.0, gap: values[0] }.carry(memory, push);
+        TwoMassLink { stiffness: values[2], damping, inertia: motor, viscous: 0.0, gap: values[0] }.carry(state, push);
     }
 }

@@ -71,7 +71,7 @@ impl Effect for Cogging {
         })
     }
 
-    fn act_on_drive(&self, _form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         let Some((pitch, parts)) = values.split_last() else { return };
         for (at, wave) in parts.chunks_exact(2).enumerate() {
             let turn = TAU * (at + 1) as f64 / pitch.max(f64::MIN_POSITIVE);

@@ -50,7 +50,7 @@ impl Effect for CoulombFriction {
         }
     }
 
-    fn act_on_drive(&self, form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         let direction = push.direction();
         if form == 0 {
             push.apply_dry_friction(values[0] * direction, values[0]);

@@ -33,19 +33,19 @@ impl Effect for EffortLag {
         geometric(scene.sample, 30.0 * scene.step, 7).iter().map(|time| Start::at(&[*time])).collect()
     }
 
-    fn act_on_drive(&self, _form: usize, values: &[f64], memory: &mut EffectState, push: &mut DriveState) {
-        // memory: effort at the tool, command an instant ago, its rate, whether they are known.
+    fn act_on_drive(&self, _form: usize, values: &[f64], state: &mut EffectState, push: &mut DriveState) {
+        // state: effort at the tool, command an instant ago, its rate, whether they are known.
         let time = values[0];
-        if memory[3] == 0.0 || time <= 0.0 {
-            (memory[0], memory[1], memory[2], memory[3]) = (push.effort, push.effort, push.effort_rate, 1.0);
+        if state[3] == 0.0 || time <= 0.0 {
+            (state[0], state[1], state[2], state[3]) = (push.effort, push.effort, push.effort_rate, 1.0);
             return;
         }
         let ratio = push.step / time;
         if ratio > 0.0 {
-            memory[0] = push.effort_since([memory[1], memory[2]]).lagged(memory[0], ratio);
+            state[0] = push.effort_since([state[1], state[2]]).lagged(state[0], ratio);
         }
-        (memory[1], memory[2]) = (push.effort, push.effort_rate);
-        push.effort_rate = (push.effort - memory[0]) / time;
-        push.effort = memory[0];
+        (state[1], state[2]) = (push.effort, push.effort_rate);
+        push.effort_rate = (push.effort - state[0]) / time;
+        push.effort = state[0];
     }
 }

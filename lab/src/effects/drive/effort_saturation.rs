@@ -38,7 +38,7 @@ impl Effect for EffortSaturation {
         Some(values[0].abs())
     }
 
-    fn act_on_drive(&self, _form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         push.effort = push.effort.max(-values[0].abs()).min(values[0].abs());
     }
 }

@@ -57,7 +57,7 @@ impl Effect for GravityLoad {
         }
     }
 
-    fn act_on_drive(&self, form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         push.resistance += if form == 0 {
             values[0]
         } else {

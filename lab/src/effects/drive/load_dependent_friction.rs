@@ -36,7 +36,7 @@ impl Effect for LoadDependentFriction {
         [0.02, 0.2].iter().map(|part| Start::sized(&[*part], &[0])).collect()
     }
 
-    fn act_on_drive(&self, _form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, _form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         let level = values[0] * push.force.abs();
         push.apply_dry_friction(level * push.direction(), level);
     }

@@ -65,7 +65,7 @@ impl Effect for StribeckFriction {
         speeds.iter().map(|speed| Start::sized(&[level, level, *speed], &[0, 1])).collect()
     }
 
-    fn act_on_drive(&self, form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         let speed = values[2].max(f64::MIN_POSITIVE);
         // Within the blur the speed is spread by the acceleration: what is felt is the mean over a Gaussian.
         let spread = ((push.acceleration * push.filter_width).powi(2) + push.velocity_noise.powi(2)).sqrt();

@@ -83,7 +83,7 @@ impl Effect for TransmissionCompliance {
         starts
     }
 
-    fn act_on_drive(&self, form: usize, values: &[f64], memory: &mut EffectState, push: &mut DriveState) {
+    fn act_on_drive(&self, form: usize, values: &[f64], state: &mut EffectState, push: &mut DriveState) {
         let motor = values[1] * push.inertia;
         let viscous = if form == 0 { 0.0 } else { values[3] * push.viscous };
         if push.filter_width > 0.0 {
@@ -99,6 +99,6 @@ impl Effect for TransmissionCompliance {
             return;
         }
         let damping = 2.0 * values[2] * (values[0] * motor).max(0.0).sqrt();
-        TwoMassLink { stiffness: values[0], damping, inertia: motor, viscous, gap: 0.0 }.carry(memory, push);
+        TwoMassLink { stiffness: values[0], damping, inertia: motor, viscous, gap: 0.0 }.carry(state, push);
     }
 }

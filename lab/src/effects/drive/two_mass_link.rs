@@ -21,8 +21,8 @@ const MAX_SUBSTEPS: f64 = 64.0;
 
 impl TwoMassLink {
     /// Runs the motor's side over the last step and replaces the effort by what the link transmits.
-    pub fn carry(&self, memory: &mut EffectState, push: &mut DriveState) {
-        // memory: motor position, its velocity, tool position, tool velocity, effort an instant ago, its rate, whether known.
+    pub fn carry(&self, state: &mut EffectState, push: &mut DriveState) {
+        // state: motor position, its velocity, tool position, tool velocity, effort an instant ago, its rate, whether known.
         if self.stiffness <= 0.0 || self.inertia <= 0.0 {
             return;
         }
@@ -32,13 +32,13 @@ impl TwoMassLink {
         }
         push.inertia -= self.inertia;
         push.viscous -= self.viscous;
-        if memory[6] == 0.0 {
+        if state[6] == 0.0 {
             let stretch = push.effort / self.stiffness;
             let lead = stretch + 0.5 * self.gap * stretch.signum();
             let (position, velocity) = (push.position, push.velocity);
-            *memory = [position + lead, velocity, position, velocity, push.effort, push.effort_rate, 1.0];
+            **state = [position + lead, velocity, position, velocity, push.effort, push.effort_rate, 1.0];
         }
-        let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, _] = *memory;
+        let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, _] = **state;
         let part = steps.max(1.0).recip();
         let span = push.step * part;
         let lightness = span / self.inertia;
@@ -56,7 +56,7 @@ impl TwoMassLink {
             speed += lightness * (effort.at(middle) - pull - self.viscous * speed);
             motor += 0.5 * span * speed;
         }
-        *memory = [motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0];
+        **state = [motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0];
         push.effort = self.pull(motor - push.position, speed - push.velocity);
         push.effort_rate = self.stiffness * (speed - push.velocity);
     }
