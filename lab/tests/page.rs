@@ -11,7 +11,6 @@ use full::Full;
 use palpate_lab::page::{Page, Trial};
 use reading::{bytes, doubles, floats, prose};
 use std::io::ErrorKind;
-use std::time::{Duration, Instant};
 use synthetic::{AFM, BENCH, Touching, odd, page, touching};
 
 fn written(page: &Page) -> String {
@@ -195,12 +194,9 @@ fn a_million_samples_are_thinned_and_keep_what_matters() {
     trial.methods[6].innovation[345_678] = -42.0;
     trial.methods[8].innovation[345_679] = 41.0;
     trial.notices.push("a notice".into());
-    let start = Instant::now();
     let html = written(&page("bench A", vec![trial.clone()]));
-    let took = start.elapsed();
-    println!("{} bytes in {took:?}", html.len());
+    println!("{} bytes", html.len());
     assert!(html.len() < 15_000_000, "{} bytes", html.len());
-    assert!(took < Duration::from_secs(20), "{took:?}");
 
     let time = doubles(&html, "t0-time");
     assert!((6_000..=12_000).contains(&time.len()), "{} rows", time.len());

@@ -197,6 +197,19 @@ impl Client {
         counters.context("the drive does not tell its counters")
     }
 
+    /// Ticks since the drive started; what comes meanwhile goes to `take`.
+    ///
+    /// # Errors
+    /// As [`Self::request`].
+    pub fn ticks(&mut self, mut take: impl FnMut(Message<'_>)) -> Result<u32> {
+        let mut ticks = None;
+        self.ask(Command::Counters, |message| match message {
+            Message::Counters(found) => ticks = Some(found.others[0]),
+            other => take(other),
+        })?;
+        ticks.context("the drive does not tell its ticks")
+    }
+
     /// Feeds the first of `inputs` and returns the rest; all of them where the drive has no room.
     ///
     /// # Errors
