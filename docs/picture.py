@@ -3,8 +3,9 @@
     palpate diagnose --rig lab/rigs/dfki_pendulum.toml ddp.csv dircol.csv --model improved.toml --json diagnosis.json
     python3 docs/picture.py lab/rigs/dfki_pendulum.toml improved.toml diagnosis.json ddp.csv docs/picture.svg
 
-Position and torque pass the same Gaussian; velocity and acceleration are differences of the filtered position. The balance of the
-drive is J a + b v + gravity + Coulomb friction = torque, with the values of the two rig files, evaluated here independently of the tool.
+The balance of the drive, J a + b v + gravity + Coulomb friction = torque, is evaluated here independently of the tool, with the values
+of the two rig files. The angle passes a Gaussian before it is differentiated, the torque of the balance passes it again, and the
+measured torque passes it twice: what is compared has been filtered alike.
 Needs Python 3.11 and nothing else.
 """
 
@@ -14,7 +15,7 @@ import math
 import sys
 import tomllib
 
-KNOWN = {"gravity_load", "coulomb_friction"}
+KNOWN = {"gravity_load": "gravity load", "coulomb_friction": "Coulomb friction"}
 WIDTH, HEIGHT, LEFT, TOP, RIGHT, BOTTOM = 860, 470, 70, 62, 20, 60
 MEASURED, NOMINAL, NAMED = "#5b6472", "#d1495b", "#1f78b4"
 
@@ -69,14 +70,15 @@ def main(rig_path, model_path, answer_path, trial_path, out_path):
     step = (time[-1] - time[0]) / (len(time) - 1)
     bandwidth = answer["fit"]["band_hz"]
     angle = gaussian([float(row["position_rad"]) for row in rows], step, bandwidth)
-    measured = gaussian([float(row["torque_Nm"]) for row in rows], step, bandwidth)
+    filtered = lambda values: gaussian(values, step, bandwidth)
+    measured = filtered(filtered([float(row["torque_Nm"]) for row in rows]))
     velocity = derivative(angle, time)
     acceleration = derivative(velocity, time)
     curves = [
-        [torque(rig, *row) for row in zip(angle, velocity, acceleration)] for rig in (nominal, named)
+        filtered([torque(rig, *row) for row in zip(angle, velocity, acceleration)]) for rig in (nominal, named)
     ]
     residual = [rms([m - value for m, value in zip(measured, curve)]) for curve in curves]
-    names = [p["name"].replace("_", " ") for p in answer["physics"] if p["name"] != "unknown"]
+    names = [KNOWN[p["name"]] for p in answer["physics"] if p["name"] in KNOWN]
     text = draw(angle, measured, curves, names, residual)
     with open(out_path, "w", encoding="utf-8") as file:
         file.write(text)
@@ -84,8 +86,7 @@ def main(rig_path, model_path, answer_path, trial_path, out_path):
 
 
 def draw(angle, measured, curves, names, residual):
-    low, high = -math.pi * 1.1, math.pi * 1.1
-    low, high = min(low, min(angle)), max(high, max(angle))
+    low, high = min(angle) - 0.15, max(angle) + 0.15
     peak = max(abs(value) for values in [measured, *curves] for value in values) * 1.05
     x = lambda value: LEFT + (value - low) / (high - low) * (WIDTH - LEFT - RIGHT)
     y = lambda value: TOP + (peak - value) / (2 * peak) * (HEIGHT - TOP - BOTTOM)
@@ -100,7 +101,7 @@ def draw(angle, measured, curves, names, residual):
         return f'<text x="{at[0]}" y="{at[1]}" {given}>{text}</text>'
 
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="system-ui, sans-serif" font-size="14" fill="#1c2330">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="DejaVu Sans, Verdana, Helvetica, sans-serif" font-size="14" fill="#1c2330">',
         "<title>Torque of a motor-driven arm over its angle: measured, simulated without and with the physics that was named</title>",
         f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#ffffff"/>',
         words((LEFT, 26), f"Missing in the simulation: {' and '.join(names)}", font_size=18, font_weight=600),

@@ -1,4 +1,5 @@
-//! The table of `palpate` beside its baselines: `cargo run --release -p palpate-baselines`; with `--readme` its rows of the README are
+//! The table of `palpate` beside its baselines: `cargo run --release -p palpate-baselines`; with `--document` its rows of
+//! docs/profile.md are
 //! written there.
 
 #[cfg(not(target_os = "none"))]
@@ -11,8 +12,8 @@ fn main() -> std::process::ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let done = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [] => table::print(),
-        ["--readme"] => table::write(),
-        _ => Err(anyhow::anyhow!("nothing, or --readme")),
+        ["--document"] => table::write(),
+        _ => Err(anyhow::anyhow!("nothing, or --document")),
     };
     match done {
         Ok(()) => std::process::ExitCode::SUCCESS,

@@ -1,4 +1,4 @@
-//! The table, whole and as the README has it.
+//! The table, whole and as docs/profile.md has it.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -14,10 +14,10 @@ const HEAD: &str = "| update | window | instructions, mean / worst | cycles, mod
 |---|---|---|---|---|---|
 ";
 
-const BEGIN: &str = "<!-- written by `palpate-baselines --readme`; not by hand -->";
+const BEGIN: &str = "<!-- written by `palpate-baselines --document`; not by hand -->";
 const END: &str = "<!-- end of what `palpate-baselines` writes -->";
 
-/// A row of the README's table: what it is called there, whether it is of `palpate`, and the name and window it was measured by.
+/// A row of the table of docs/profile.md: what it is called there, whether it is of `palpate`, and the name and window it was measured by.
 type Row = (&'static str, bool, &'static str, Option<u16>);
 
 const ROWS: [Row; 16] = [
@@ -61,7 +61,7 @@ impl Measured {
         line(label, figures, &error.map_or_else(String::new, |error| format!("{error:.1e} ")))
     }
 
-    fn readme(&self) -> Result<String> {
+    fn document(&self) -> Result<String> {
         let mut table = HEAD.to_owned();
         for (label, ours, name, window) in ROWS {
             let figures = if ours { &self.ours.figures } else { &self.baselines.figures };
@@ -110,15 +110,16 @@ pub fn print() -> Result<()> {
     Ok(())
 }
 
-/// Writes the README's rows into it.
+/// Writes the rows of docs/profile.md into it.
 ///
 /// # Errors
-/// As [`print`]; or the README has no place for them.
+/// As [`print`]; or docs/profile.md has no place for them.
 pub fn write() -> Result<()> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
-    let readme = std::fs::read_to_string(&path).context("README.md")?;
-    let text = replaced(&readme, &Measured::take()?.readme()?).context("README.md: the marks of the table")?;
-    std::fs::write(&path, text).context("README.md")
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/profile.md");
+    let document = std::fs::read_to_string(&path).context("docs/profile.md")?;
+    let text =
+        replaced(&document, &Measured::take()?.document()?).context("docs/profile.md: the marks of the table")?;
+    std::fs::write(&path, text).context("docs/profile.md")
 }
 
 #[cfg(test)]
@@ -127,19 +128,20 @@ mod tests {
     use palpate_lab::profile::kept_costs;
     use palpate_lab::tools::{self, MissingTools};
 
-    /// Mean and worst instructions of the README's row that begins with `start`.
-    fn told(readme: &str, start: &str) -> [f64; 2] {
-        let row = readme.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_else(|| panic!("no row {start}"));
+    /// Mean and worst instructions of the row of docs/profile.md that begins with `start`.
+    fn told(document: &str, start: &str) -> [f64; 2] {
+        let row =
+            document.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_else(|| panic!("no row {start}"));
         let (mean, worst) = row.split('|').next().and_then(|cell| cell.split_once('/')).expect("mean / worst");
         [mean, worst].map(|figure| figure.trim().parse().expect("a number"))
     }
 
     #[test]
-    fn the_readme_tells_the_instructions_that_are_counted() {
-        let readme =
-            std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).expect("README");
+    fn the_document_tells_the_instructions_that_are_counted() {
+        let document = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/profile.md"))
+            .expect("docs/profile.md");
         assert_eq!(
-            replaced(&readme, "x").map(|text| text.matches("| nalgebra |").count()),
+            replaced(&document, "x").map(|text| text.matches("| nalgebra |").count()),
             Some(0),
             "rows beside the marks"
         );
@@ -172,9 +174,9 @@ mod tests {
             };
             let counted = counted.unwrap_or_else(|| panic!("{name} is not measured"));
             let window = window.map_or_else(String::new, |window| format!("{window} "));
-            let told = told(&readme, &format!("| {label} | {window}|"));
+            let told = told(&document, &format!("| {label} | {window}|"));
             for (told, counted) in told.into_iter().zip(counted) {
-                assert!((told - counted).abs() <= 0.02 * counted, "{label}: README {told}, counted {counted}");
+                assert!((told - counted).abs() <= 0.02 * counted, "{label}: docs/profile.md {told}, counted {counted}");
             }
         }
     }

@@ -2,17 +2,19 @@
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use crate::calibrate::{self, CalibrateArgs};
 use crate::catalogue::{self, EffectsArgs};
 use crate::challenge::{self, ChallengeArgs};
+use crate::completions::{self, CompletionsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
 use crate::listen::{self, ListenArgs};
 use crate::profile::{self, ProfileArgs};
 use crate::replay::{self, ReplayArgs};
 use crate::reproduce::{self, ReproduceArgs};
+use crate::schema::{self, SchemaArgs};
 use crate::simulate::{self, SimulateArgs};
 
 /// Stiffness and damping of what a tool touches: identified from recordings, on the host or on the drive's processor.
@@ -43,6 +45,10 @@ enum Command {
     Calibrate(CalibrateArgs),
     /// List the physics that it knows beyond spring and damper
     Effects(EffectsArgs),
+    /// Write the JSON schema of a report
+    Schema(SchemaArgs),
+    /// Write completions for a shell
+    Completions(CompletionsArgs),
 }
 
 /// Runs the command line; 0 done, 1 the input or a file is at fault, 2 the command line is.
@@ -58,6 +64,8 @@ pub fn run() -> ExitCode {
         Command::Listen(args) => listen::run(&args),
         Command::Calibrate(args) => calibrate::run(&args),
         Command::Effects(args) => catalogue::run(&args),
+        Command::Schema(args) => schema::run(&args),
+        Command::Completions(args) => completions::run(&args, Cli::command()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -45,7 +45,7 @@ pub struct ProfileArgs {
     pub renew_budget: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, schemars::JsonSchema)]
 struct Document<'a> {
     schema: &'static str,
     target: &'static str,
@@ -53,6 +53,12 @@ struct Document<'a> {
     note: &'static str,
     counts_agree_on: usize,
     methods: &'a [Figures],
+}
+
+/// The JSON schema of the figures, made from the type that writes them.
+#[must_use]
+pub fn schema() -> schemars::Schema {
+    schemars::schema_for!(Document<'static>)
 }
 
 /// A profile: the image, what was counted, and the figures.

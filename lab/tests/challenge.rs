@@ -121,7 +121,7 @@ fn no_case_is_a_fault_of_the_command_line() {
 #[test]
 fn the_page_of_the_diagnosis_shows_the_run_of_its_aims() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let run: ChallengeScore = serde_json::from_value(json(&project.join("docs/aims.json"))).unwrap();
+    let run: ChallengeScore = serde_json::from_value(json(&project.join("results/aims.json"))).unwrap();
     let page = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
     assert!(page.contains(summary::table(&run).trim()), "the table is of another run");
 }
@@ -129,12 +129,12 @@ fn the_page_of_the_diagnosis_shows_the_run_of_its_aims() {
 #[test]
 fn the_readme_shows_the_published_score() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let published = json(&project.join("docs/challenge.json"));
+    let published = json(&project.join("results/challenge.json"));
     let challenge: ChallengeScore = serde_json::from_value(published).unwrap();
     let readme = fs::read_to_string(project.join("README.md")).unwrap();
     let table = summary::table(&challenge);
     assert_eq!(summary::replaced(&readme, &table).as_deref(), Some(readme.as_str()), "made by hand?");
-    let page = fs::read_to_string(project.join("docs/challenge.html")).unwrap();
+    let page = fs::read_to_string(project.join("results/challenge.html")).unwrap();
     assert!(page.contains(&challenge.sealed_sha256), "the page is of another run");
     // A run that was published before there were real recordings in it has none, and is read all the same.
     if let Some(real) = &challenge.recorded {

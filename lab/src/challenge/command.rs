@@ -47,7 +47,7 @@ pub struct ChallengeArgs {
     /// Run nothing: redraw page and tables of a score that was written by --json
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cases", "seed", "source", "recordings", "rivals", "minutes", "keep"])]
     pub from: Option<PathBuf>,
-    /// Put the score into docs/challenge.json of this project, its page beside it, its table into the README, that of
+    /// Put the score into results/challenge.json of this project, its page beside it, its table into the README, that of
     /// the real recordings into docs/diagnosis.md
     #[arg(long)]
     pub publish: bool,
@@ -126,16 +126,16 @@ fn read(path: &Path) -> Result<ChallengeScore> {
 /// Puts the score where the project shows it.
 fn publish(challenge: &ChallengeScore, text: &str, summary: &str) -> Result<()> {
     let project = project()?;
-    let docs = project.join("docs");
+    let results = project.join("results");
     let mut page = Vec::new();
     page::write(challenge, &mut page).context("the page cannot be written")?;
     let mut files = vec![
         filled(project.join("README.md"), summary)?,
-        (docs.join("challenge.json"), text.as_bytes().to_vec()),
-        (docs.join("challenge.html"), page),
+        (results.join("challenge.json"), text.as_bytes().to_vec()),
+        (results.join("challenge.html"), page),
     ];
     if let Some(recorded) = &challenge.recorded {
-        files.push(filled(docs.join("diagnosis.md"), &section(recorded))?);
+        files.push(filled(project.join("docs/diagnosis.md"), &section(recorded))?);
     }
     files.into_iter().try_for_each(|(path, bytes)| commit(OutFile::create(&path)?, &bytes))
 }

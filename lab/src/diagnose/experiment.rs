@@ -14,6 +14,7 @@ mod test_motions;
 mod trajectory;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::diagnose::bootstrap::problem::IdentificationProblem;
@@ -31,7 +32,7 @@ use test_motions::TestMotion;
 use trajectory::Trajectory;
 
 /// A trajectory to run.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Experiment {
     /// What it is and what it would tell.
     pub text: String,

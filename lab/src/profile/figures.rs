@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use anyhow::{Context, Result, ensure};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::calls::Calls;
@@ -20,7 +21,7 @@ const FLASH_LINE_BYTES: u32 = 16;
 const FLASH_WAIT_CYCLES: u32 = 5;
 
 /// The figures of one estimator.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Figures {
     /// Its name.
     pub name: String,

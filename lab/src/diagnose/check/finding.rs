@@ -1,9 +1,10 @@
 //! What a recording shows before anything is fitted, or what limits an answer.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Something to know.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Finding {
     /// What it is, for programs: "one_speed". Of a code there is at most one finding of the recordings.
     pub code: &'static str,

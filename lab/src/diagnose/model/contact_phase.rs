@@ -1,5 +1,6 @@
 //! Phases of contact, row by row.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::diagnose::model::Model;
@@ -7,7 +8,7 @@ use crate::diagnose::signals::filtered_trial::FilteredTrial;
 use crate::diagnose::thresholds::contact_phase::{ANTICIPATION_WIDTHS, HOLD_SPEED_FRACTION, TRANSITION_WIDTHS};
 
 /// Phase of contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
     /// Nothing touched.

@@ -1,5 +1,6 @@
 //! The diagnosis as data: what the JSON holds, word for word, and what the page draws.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use crate::diagnose::check::Finding;
@@ -8,7 +9,7 @@ pub use crate::diagnose::model::contact_phase::Phase;
 pub use crate::diagnose::selection::verdict::Verdict;
 
 /// The diagnosis, in the layout of `palpate.diagnosis/1`.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Diagnosis {
     /// "palpate.diagnosis/1".
     pub schema: &'static str,
@@ -36,7 +37,7 @@ pub struct Diagnosis {
 }
 
 /// Physics left out.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Physics {
     /// Name of the effect, or "unknown".
     pub name: String,
@@ -55,7 +56,7 @@ pub struct Physics {
 }
 
 /// Why one should believe it.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct Evidence {
     /// Share of the held-out residual's energy that it takes away: 1 - (rms after / rms before)^2, in its channel.
     pub held_out_gain: f64,
@@ -64,7 +65,7 @@ pub struct Evidence {
 }
 
 /// A parameter and its interval.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Value {
     /// "alpha".
     pub name: String,
@@ -77,7 +78,7 @@ pub struct Value {
 }
 
 /// What this data cannot tell from the answer.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Alternative {
     /// Effects.
     pub physics: Vec<String>,
@@ -88,7 +89,7 @@ pub struct Alternative {
 }
 
 /// Where simulation and recording differ.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Location {
     /// "force" or "effort".
     pub channel: &'static str,
@@ -108,7 +109,7 @@ pub struct Location {
 }
 
 /// How well the models fit, as root mean squares of the residual on data that no fit saw.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct FitQuality {
     /// "force" or "effort".
     pub channel: &'static str,
@@ -131,7 +132,7 @@ pub struct FitQuality {
 }
 
 /// A nominal value.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Nominal {
     /// Key of the rig file.
     pub name: String,
@@ -146,7 +147,7 @@ pub struct Nominal {
 }
 
 /// What the page draws beside the answer.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct PlotData {
     /// Name of the rig.
     pub rig: String,
@@ -165,7 +166,7 @@ pub struct PlotData {
 }
 
 /// One channel of one trial over time. All vectors are of equal length.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Trace {
     /// File name.
     pub trial: String,
@@ -190,7 +191,7 @@ pub struct Trace {
 }
 
 /// Where the mismatch lies along one quantity.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct BinnedResidual {
     /// "force" or "effort".
     pub channel: &'static str,
@@ -209,7 +210,7 @@ pub struct BinnedResidual {
 }
 
 /// Evidence of one effect.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct EffectEvidence {
     /// Name.
     pub name: &'static str,

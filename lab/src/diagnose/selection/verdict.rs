@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::cross_validation::{self, HeldOut};
@@ -19,7 +20,7 @@ use crate::diagnose::thresholds::verdict::{
 use crate::effects::Place;
 
 /// What came out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The simulation as given leaves what the sensors leave.
