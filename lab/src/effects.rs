@@ -88,6 +88,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// The estimator of the library that follows it on the drive, with its regressor; `None` where none does.
+    fn on_drive(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Acts on the reading of the force sensor, over a whole trial.
     fn act_on_reading(&self, _form: usize, _values: &[f64], _reading: &mut Reading<'_>) {}
 }

@@ -37,10 +37,10 @@ pub struct DiagnoseArgs {
     /// Write the improved rig file, which `palpate simulate` runs
     #[arg(long, value_name = "FILE.toml")]
     pub model: Option<PathBuf>,
-    /// Write the reference trajectory that would tell the rivals apart, where there are any
+    /// Write the reference trajectory that would tell the alternatives apart, where there are any
     #[arg(long, value_name = "FILE.csv")]
     pub experiment: Option<PathBuf>,
-    /// Seed of the twins: the same seed, the same answer
+    /// Seed of the replicates: the same seed, the same answer
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
 }

@@ -1,6 +1,6 @@
-//! The experiment that would tell the answer from its rivals.
+//! The experiment that would tell the answer from its alternatives.
 //!
-//! What a motion is worth is what the best-fitting rival leaves of it, were the answer the truth: T-optimality over pairs,
+//! What a motion is worth is what the best-fitting alternative leaves of it, were the answer the truth: T-optimality over pairs,
 //! of which the worst counts. The motions stay within what the recordings did, so that the rig has borne it all before.
 
 mod description;
@@ -45,9 +45,9 @@ pub struct Experiment {
 /// A motion that was tried.
 struct TriedMotion {
     motion: TestMotion,
-    /// What each rival leaves of it, were the answer true.
+    /// What each alternative leaves of it, were the answer true.
     left: Vec<Discrepancy>,
-    /// What the answer leaves of it, were each rival true.
+    /// What the answer leaves of it, were each alternative true.
     reverse: Vec<Discrepancy>,
 }
 
@@ -63,7 +63,7 @@ impl TriedMotion {
     }
 }
 
-/// Energy in the closest of the pairs. Where a rival is `wider`, that is, can do all that the answer does, only its own
+/// Energy in the closest of the pairs. Where a alternative is `wider`, that is, can do all that the answer does, only its own
 /// truth could tell them apart.
 fn least(left: &[Discrepancy], reverse: &[Discrepancy], wider: &[bool]) -> f64 {
     let both = left.iter().zip(reverse).zip(wider);
@@ -81,7 +81,7 @@ pub struct InformationRate {
 }
 
 /// The experiment that best tells `answer`, a model with its values, from the closest of its `rivals`, and what it is
-/// worth; `None` where there is no rival, or nothing moved.
+/// worth; `None` where there is no alternative, or nothing moved.
 #[must_use]
 pub fn design(
     problem: &IdentificationProblem,
@@ -110,7 +110,7 @@ fn best(
     wider: &[bool],
     room: MotionLimits,
 ) -> Option<TriedMotion> {
-    // Against several rivals, one motion may do what another leaves undone.
+    // Against several alternatives, one motion may do what another leaves undone.
     let both = match tried.as_slice() {
         [first, second, ..] => Some(pairs.attempt(first.motion.then(&second.motion))),
         _ => None,

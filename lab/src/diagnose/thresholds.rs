@@ -10,17 +10,17 @@ pub mod fitted_model {
     /// Unit: 1; chosen.
     pub const MAX_BIAS_FRACTION: f64 = 0.5;
 
-    /// Growth of what twins leave beyond which their origin is astray.
+    /// Growth of what replicates leave beyond which their origin is astray.
     ///
     /// Unit: 1; chosen.
     pub const DIVERGENCE_RATIO: f64 = 2.0;
 
-    /// Times that twins follow values that go on.
+    /// Times that replicates follow values that go on.
     ///
     /// Unit: count; chosen.
     pub const MAX_REFITS: usize = 2;
 
-    /// Twins that tell the floor.
+    /// Replicates that tell the expected noise.
     ///
     /// Unit: count; chosen.
     pub const NOISE_REPLICATES: usize = 24;
@@ -53,7 +53,7 @@ pub mod sampler {
     /// Unit: 1; chosen.
     pub const REST_EDGE_WIDTHS: f64 = 3.0;
 
-    /// Twins from which the noise of the sensors is told.
+    /// Replicates from which the noise of the sensors is told.
     ///
     /// Unit: count; chosen.
     pub const SPECTRUM_REPLICATES: usize = 4;
@@ -315,7 +315,7 @@ pub mod projection {
 
 /// Of `estimation/residual_summary`.
 pub mod residual_summary {
-    /// Effects that are worth a closer look, on the recording and on its twins.
+    /// Effects that are worth a closer look, on the recording and on its replicates.
     ///
     /// Unit: count; chosen.
     pub const MAX_PROMISING: usize = 16;
@@ -473,7 +473,7 @@ pub mod cross_validation {
 
 /// Of `selection/forward_selection`.
 pub mod forward_selection {
-    /// Twins a stand is judged by, and the rows that many of them can have.
+    /// Replicates a stand is judged by, and the rows that many of them can have.
     ///
     /// Unit: count; chosen.
     pub const MAX_REPLICATES: usize = 40;
@@ -509,22 +509,22 @@ pub mod forward_selection {
     /// Unit: 1; chosen.
     pub const CONVINCING_FRACTION: [f64; 2] = [0.25, 0.05];
 
-    /// Least share of the energy above the floor that a further effect has to take.
+    /// Least share of the energy above the expected noise that a further effect has to take.
     ///
     /// Unit: 1; chosen.
     pub const MIN_GAIN_FRACTION: f64 = 0.12;
 
-    /// Energy, beside the price of its parameters, that a rival or a finer form has to take to stand in a term's place.
+    /// Energy, beside the price of its parameters, that a alternative or a finer form has to take to stand in a term's place.
     ///
     /// Unit: 1; chosen.
     pub const REPLACEMENT_CHI2_MARGIN: f64 = 8.0;
 
-    /// Share of what lies above the floor that a finer form has to take.
+    /// Share of what lies above the expected noise that a finer form has to take.
     ///
     /// Unit: 1; chosen.
     pub const MIN_REFINED_FORM_GAIN: f64 = 0.25;
 
-    /// Power over the floor's that is left once something is named, below which nothing further is looked for: a residual five
+    /// Power over the expected noise's that is left once something is named, below which nothing further is looked for: a residual five
     /// per cent above what the sensors leave.
     ///
     /// Unit: 1; chosen.
@@ -543,23 +543,23 @@ pub mod forward_selection {
 
 /// Of `selection/verdict`.
 pub mod verdict {
-    /// Share of the energy above the floor that named effects have to take where something is left beside them.
+    /// Share of the energy above the expected noise that named effects have to take where something is left beside them.
     ///
     /// Unit: 1; chosen.
     pub const MIN_EXPLAINED_FRACTION: f64 = 0.7;
 
-    /// Least excess of energy, over what twins leave, that is called structure.
+    /// Least excess of energy, over what replicates leave, that is called structure.
     ///
     /// Unit: 1; chosen.
     pub const MIN_EXCESS_FRACTION: f64 = 0.015;
 
-    /// Least power over the floor's that is called structure: a residual a seventh above what the sensors leave. What a contact
+    /// Least power over the expected noise's that is called structure: a residual a seventh above what the sensors leave. What a contact
     /// begins and ends with is only known to about a tenth.
     ///
     /// Unit: 1; chosen.
     pub const STRUCTURE_POWER_RATIO: f64 = 1.3;
 
-    /// Root mean square over the floor's beyond which something is left, whatever its pattern.
+    /// Root mean square over the expected noise's beyond which something is left, whatever its pattern.
     ///
     /// Unit: 1; chosen.
     pub const MAX_RMS_OVER_NOISE: f64 = 2.0;
@@ -574,7 +574,7 @@ pub mod verdict {
     /// Unit: 1; chosen.
     pub const WORSE_RMS_RATIO: f64 = 1.05;
 
-    /// Share of what is left without it on unseen data, of its power or of its whitened energy above what twins leave, that an effect
+    /// Share of what is left without it on unseen data, of its power or of its whitened energy above what replicates leave, that an effect
     /// beside others has to take where structure is left.
     ///
     /// Unit: 1; chosen.
@@ -585,12 +585,12 @@ pub mod verdict {
     /// Unit: 1; chosen.
     pub const MIN_SUPPORT_FAR_FROM_NOISE: f64 = 0.5;
 
-    /// Energy by which a rival may stand behind, for chance: 12 of a white energy is a probability of 5e-4 for one value.
+    /// Energy by which a alternative may stand behind, for chance: 12 of a white energy is a probability of 5e-4 for one value.
     ///
     /// Unit: 1; derived.
     pub const ALTERNATIVE_CHI2_MARGIN: f64 = 12.0;
 
-    /// Share of an effect's own energy by which a rival may stand behind: laws are never quite those of nature.
+    /// Share of an effect's own energy by which a alternative may stand behind: laws are never quite those of nature.
     ///
     /// Unit: 1; chosen.
     pub const ALTERNATIVE_REL_MARGIN: f64 = 0.06;

@@ -1,4 +1,4 @@
-//! A fitted model with its twins, and what they say of the noise.
+//! A fitted model with its replicates, and what they say of the noise.
 
 use rayon::prelude::*;
 
@@ -23,29 +23,29 @@ pub struct FittedModel {
     pub model: Model,
     /// Its fitted values.
     pub values: Vec<f64>,
-    /// The values that twins are made from: those whose twins, fitted, give the fitted values in the mean.
+    /// The values that replicates are made from: those whose replicates, fitted, give the fitted values in the mean.
     pub generating_values: Vec<f64>,
     /// The measures of the trials under it.
     pub excitation: ExcitationStats,
-    /// Floors told by twins.
+    /// Floors told by replicates.
     pub whitener: Whitener,
     /// White noise of each trial.
     pub noise: Vec<TrialNoise>,
     /// What the model leaves, whitened.
     pub summary: ResidualSummary,
-    /// The same of each twin.
+    /// The same of each replicate.
     pub replicates: Vec<ResidualSummary>,
 }
 
 impl FittedModel {
-    /// Power of what is left over that of what twins leave, in the channel in which it is greater.
+    /// Power of what is left over that of what replicates leave, in the channel in which it is greater.
     #[must_use]
     pub fn power_ratio(&self) -> f64 {
         let [force, effort] = self.power_ratios();
         force.max(effort)
     }
 
-    /// Power of what is left over that of what twins leave, of force and effort.
+    /// Power of what is left over that of what replicates leave, of force and effort.
     #[must_use]
     pub fn power_ratios(&self) -> [f64; 2] {
         [0, 1].map(|channel| {
@@ -59,14 +59,14 @@ impl FittedModel {
     }
 }
 
-/// A first look at twins, for the floor.
+/// A first look at replicates, for the expected noise.
 struct PilotReplicates {
     noise: Vec<TrialNoise>,
     replicates: Vec<Vec<AnalysisTrial>>,
     residuals: Vec<Vec<Residual>>,
 }
 
-/// `moved`, no further from the fitted value than a bias is believed: one of more than half an effect's value is not told from twins,
+/// `moved`, no further from the fitted value than a bias is believed: one of more than half an effect's value is not told from replicates,
 /// and the effect is not turned off by it.
 #[must_use]
 pub fn near(model: &Model, values: &[f64], at: usize, moved: f64) -> f64 {
@@ -75,9 +75,9 @@ pub fn near(model: &Model, values: &[f64], at: usize, moved: f64) -> f64 {
 }
 
 impl IdentificationProblem {
-    /// Stands on `model`: fits it under floors told by twins, and asks the recording and `count` twins the same questions.
+    /// Stands on `model`: fits it under noise models told by replicates, and asks the recording and `count` replicates the same questions.
     ///
-    /// A better model does not make the sensors worse: no moment's floor rises far above what it was `before`.
+    /// A better model does not make the sensors worse: no moment's expected noise rises far above what it was `before`.
     #[must_use]
     pub fn fit_with_replicates(
         &self,
@@ -98,8 +98,8 @@ impl IdentificationProblem {
         }
         let mut noise_models = self.noise_models_of(model, &second, before);
         let mut values = self.fit_under(model, &fitted, &noise_models);
-        // The floor depends on the values and they on the floor, weakly: twice is enough. Where much is missing they may yet have
-        // gone on, and twins of where they were would show that way as the sensors' noise.
+        // The expected noise depends on the values and they on the expected noise, weakly: twice is enough. Where much is missing they may yet have
+        // gone on, and replicates of where they were would show that way as the sensors' noise.
         for _ in 0..MAX_REFITS {
             if !self.has_diverged(model, &values, &second, &noise_models) {
                 break;
@@ -137,7 +137,7 @@ impl IdentificationProblem {
         }
     }
 
-    /// Whether `values` leave far more of the twins than those do that the twins were seen by, in a channel.
+    /// Whether `values` leave far more of the replicates than those do that the replicates were seen by, in a channel.
     fn has_diverged(&self, model: &Model, values: &[f64], pilot: &PilotReplicates, noise_models: &Whitener) -> bool {
         let plain = noise_models.without_autocorrelation();
         let power = |residuals: &[Vec<Residual>]| {
@@ -150,7 +150,7 @@ impl IdentificationProblem {
         (0..2).any(|channel| now[channel] > DIVERGENCE_RATIO * then[channel])
     }
 
-    /// Twins made from `generating_values`, and what `values` leave of them.
+    /// Replicates made from `generating_values`, and what `values` leave of them.
     fn pilot(&self, model: &Model, values: &[f64], generating_values: &[f64]) -> PilotReplicates {
         let noise_free = self.sampler.noise_free(model, generating_values);
         let noise = self.sampler.noise(model, values, &noise_free);
@@ -175,10 +175,10 @@ impl IdentificationProblem {
     }
 
     /// `generating_values`, which `replicates` were made from, moved by what their fits miss `values` in the mean; `values` of a drive that was
-    /// cut, for its twins keep the recorded commands.
+    /// cut, for its replicates keep the recorded commands.
     ///
-    /// A fit to noisy motion is biased: noise in the acceleration weakens the mass. So are the fits to twins, and those of
-    /// twins that are made from what the bias hides come out as the recording does (indirect inference: C. Gourieroux,
+    /// A fit to noisy motion is biased: noise in the acceleration weakens the mass. So are the fits to replicates, and those of
+    /// replicates that are made from what the bias hides come out as the recording does (indirect inference: C. Gourieroux,
     /// A. Monfort, E. Renault, J. Appl. Econom. 8 (1993) S85).
     fn correct_bias(
         &self,
@@ -241,7 +241,7 @@ impl IdentificationProblem {
         best
     }
 
-    /// Power over the floor's, of force and effort, that an encoder's steps alone may leave, which twins of a smoothed motion
+    /// Power over the expected noise's, of force and effort, that an encoder's steps alone may leave, which replicates of a smoothed motion
     /// do not show in full: a tool that creeps or rests is misplaced by part of a step for as long as it does, and a stiff
     /// contact turns that into a force far above the sensor's noise; and a drive that answers its encoder's steps shakes the
     /// tool by less than a step. One where the steps do not matter.
@@ -269,14 +269,14 @@ impl IdentificationProblem {
         })
     }
 
-    /// Power over the floor's in the channel in which it is greater, of those that can be trusted.
+    /// Power over the expected noise's in the channel in which it is greater, of those that can be trusted.
     #[must_use]
     pub fn trusted_ratio(&self, fitted_model: &FittedModel) -> f64 {
         let (within_quantization, ratios) = (self.within_quantization(fitted_model), fitted_model.power_ratios());
         (0..2).filter(|channel| !within_quantization[*channel]).map(|channel| ratios[channel]).fold(0.0, f64::max)
     }
 
-    /// Residuals of a twin of `fitted_model`.
+    /// Residuals of a replicate of `fitted_model`.
     #[must_use]
     pub fn replicate_residuals(&self, fitted_model: &FittedModel) -> Vec<Residual> {
         let noise_free = self.sampler.noise_free(&fitted_model.model, &fitted_model.generating_values);
@@ -304,7 +304,7 @@ impl IdentificationProblem {
     }
 }
 
-/// Energy of all that twins leave, of both channels.
+/// Energy of all that replicates leave, of both channels.
 fn residual_energy(samples: &[Vec<Residual>]) -> f64 {
     samples.iter().flatten().map(|residual| energy(&residual.force) + energy(&residual.effort)).sum()
 }

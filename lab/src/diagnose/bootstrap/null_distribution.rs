@@ -1,9 +1,9 @@
-//! What chance alone would do: the distribution of a figure over twins, and how far beyond it an observed one lies.
+//! What chance alone would do: the distribution of a figure over replicates, and how far beyond it an observed one lies.
 
-/// A figure's distribution where nothing is missing, told by twins.
+/// A figure's distribution where nothing is missing, told by replicates.
 ///
 /// Figures here are the greatest of several chances, so their upper tail falls exponentially: Gumbel's law. Its scale is
-/// taken from the twins' spread, and never below that of the energy of one white value, exp(-x/2).
+/// taken from the replicates' spread, and never below that of the energy of one white value, exp(-x/2).
 #[derive(Debug, Clone, Copy)]
 pub struct NullDistribution {
     place: f64,
@@ -13,7 +13,7 @@ pub struct NullDistribution {
 const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 
 impl NullDistribution {
-    /// From the figures of twins; `least` is the least scale of the tail.
+    /// From the figures of replicates; `least` is the least scale of the tail.
     #[must_use]
     pub fn of(figures: &[f64], least: f64) -> Self {
         let count = figures.len().max(1) as f64;

@@ -15,7 +15,7 @@ use crate::rig::{Coordinate, Rig};
 
 /// The trials and the rig they are held against.
 pub struct IdentificationProblem {
-    /// Trials and their twins.
+    /// Trials and their replicates.
     pub sampler: BootstrapSampler,
     /// The rig's nominal model.
     pub nominal: Model,
@@ -70,7 +70,7 @@ impl IdentificationProblem {
         excitation_stats(&self.sampler.trials, model, values, self.sampler.contact_filter.period, self.is_rotary)
     }
 
-    /// The nominal model fitted under floors that are not known yet, from several places of the surface.
+    /// The nominal model fitted under noise models that are not known yet, from several places of the surface.
     #[must_use]
     pub fn initial_fit(&self) -> Vec<f64> {
         let whitener = self.uniform_noise_models();
@@ -100,7 +100,7 @@ impl IdentificationProblem {
         [0.02, 0.2, 0.4, 0.6, 0.8].iter().map(|part| reached[(part * last as f64) as usize]).collect()
     }
 
-    /// Floors that are the same everywhere and have no memory: the noise of the sensors behind the lenses.
+    /// Floors that are the same everywhere and have no memory: the noise of the sensors behind the filters.
     #[must_use]
     pub fn uniform_noise_models(&self) -> Whitener {
         let uniform_trials = &self.sampler.uniform_trials;

@@ -1,7 +1,7 @@
-//! Twins: what the same sensors would have shown of the same motion, had the model been the whole truth.
+//! Replicates: what the same sensors would have shown of the same motion, had the model been the whole truth.
 //!
-//! A twin follows the recorded motion, seen through a finer lens, and takes force and effort from the model; then the
-//! sensors do to it what they do: an offset of the encoder within its step, rounding, noise. Twins run through the very
+//! A replicate follows the recorded motion, seen through a finer filter, and takes force and effort from the model; then the
+//! sensors do to it what they do: an offset of the encoder within its step, rounding, noise. Replicates run through the very
 //! code that the recording ran through. What they show of mismatch is what a model without fault would show.
 
 use rand::{RngExt as _, SeedableRng as _};
@@ -18,7 +18,7 @@ use crate::diagnose::signals::uniform_trial::UniformTrial;
 use crate::diagnose::thresholds::sampler::{REST_EDGE_WIDTHS, SPECTRUM_REPLICATES};
 use crate::effects::Reading;
 
-/// Everything that twins are made from.
+/// Everything that replicates are made from.
 pub struct BootstrapSampler {
     /// Trials as recorded.
     pub uniform_trials: Vec<UniformTrial>,
@@ -193,7 +193,7 @@ impl BootstrapSampler {
         }
     }
 
-    /// The noise that makes twins of `model` as restless as the recording is.
+    /// The noise that makes replicates of `model` as restless as the recording is.
     ///
     /// Told from third differences of the residual, over one row and over two: physics that was left out is smooth beside
     /// them, and their ratio tells the colour.
@@ -333,7 +333,7 @@ fn spectrum_from_roughness(valid: [f64; 2], white: [f64; 2], blue: [f64; 2]) -> 
     }
 }
 
-/// Restlessness at both lags that noise of deviation one has behind `filter`.
+/// Roughness at both lags that noise of deviation one has behind `filter`.
 fn unit_roughness(filter: &DerivativeFilter, colour: NoiseSpectrum, seed: u64) -> [f64; 2] {
     let mut chance = ChaCha8Rng::seed_from_u64(seed ^ 0x5eed);
     let mut noise = vec![0.0; 4000 * filter.stride];

@@ -1,4 +1,4 @@
-//! How much of what a model leaves an effect could take away, first by projection: quick enough to ask of every twin.
+//! How much of what a model leaves an effect could take away, first by projection: quick enough to ask of every replicate.
 
 use nalgebra::DVector;
 

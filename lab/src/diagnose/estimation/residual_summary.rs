@@ -1,4 +1,4 @@
-//! What a model leaves of a recording or a twin, and what effects could take of it.
+//! What a model leaves of a recording or a replicate, and what effects could take of it.
 
 use super::levenberg_marquardt::FitData;
 use super::projection::{EffectScore, ProjectedResidual};
@@ -9,18 +9,18 @@ use crate::diagnose::signals::filtered_trial::AnalysisTrial;
 use crate::diagnose::thresholds::residual_summary::MAX_PROMISING;
 use crate::effects::ExcitationStats;
 
-/// What a model leaves of one set of trials, a recording or a twin.
+/// What a model leaves of one set of trials, a recording or a replicate.
 #[derive(Debug, Clone)]
 pub struct ResidualSummary {
     /// Whitened energy, once the model's own values have taken theirs.
     pub energy: f64,
-    /// Mean square of the residual over its floor, before its memory is taken off, of force and effort: one where all is noise.
+    /// Mean square of the residual over its expected noise, before its autocorrelation is taken off, of force and effort: one where all is noise.
     pub powers: [f64; 2],
-    /// What each effect could take; of a twin, the effects that are promising on the recording.
+    /// What each effect could take; of a replicate, the effects that are promising on the recording.
     pub scores: Vec<EffectScore>,
     /// What shapes without a name could take.
     pub residual_tests: Vec<ResidualTest>,
-    /// How much the rest remembers itself.
+    /// How much the rest is autocorrelated.
     pub memory: f64,
     /// By how much the model's values would have to move to fit these trials best.
     pub shift: Vec<f64>,

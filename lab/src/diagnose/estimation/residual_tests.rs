@@ -135,7 +135,7 @@ fn shape(family: &BasisFamily<'_>, at: usize, data: FitData<'_>) -> Vec<f64> {
     white
 }
 
-/// How much of what is left remembers itself: the sum of the squared correlations over a few rows, in either channel.
+/// How much of what is left is autocorrelated: the sum of the squared correlations over a few rows, in either channel.
 #[must_use]
 pub fn memory(projected: &ProjectedResidual<'_>, data: FitData<'_>) -> f64 {
     let split = data.whitener.force_rows();

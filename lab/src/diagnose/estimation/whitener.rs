@@ -1,8 +1,8 @@
-//! What a residual is worth: scaled by the floor of its moment, freed of its memory.
+//! What a residual is worth: scaled by the expected noise of its moment, prewhitened.
 //!
-//! The noise that the sensors leave in a residual differs from moment to moment (touching, turning) and remembers itself
-//! over several rows, for every channel was smoothed. Divided by the floor of its moment and passed through the predictor
-//! error filter that makes the floor white, a residual counts for what it is worth: 7500 coarse rows for a hundred.
+//! The noise that the sensors leave in a residual differs from moment to moment (touching, turning) and is autocorrelated
+//! over several rows, for every channel was smoothed. Divided by the expected noise of its moment and passed through the predictor
+//! error filter that makes the expected noise white, a residual counts for what it is worth: 7500 coarse rows for a hundred.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,7 +11,7 @@ use crate::diagnose::model::Residual;
 use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
 use crate::diagnose::thresholds::whitener::{AR_ORDER, OWN_AUTOCORRELATION_POWER_RATIO};
 
-/// The floor of one channel over all trials.
+/// The expected noise of one channel over all trials.
 #[derive(Debug, Clone)]
 pub struct NoiseModel {
     /// Deviation of what noise leaves, row by row, a vector a trial.
@@ -26,7 +26,7 @@ pub struct NoiseModel {
     noise: [f64; AR_ORDER + 1],
 }
 
-/// The floors of both channels and the rows that count.
+/// The noise models of both channels and the rows that count.
 #[derive(Debug, Clone)]
 pub struct Whitener {
     /// Of the force reading.
@@ -47,14 +47,14 @@ pub struct RowOrigin {
 }
 
 impl NoiseModel {
-    /// A floor that is the same everywhere and has no memory.
+    /// A expected noise that is the same everywhere and has no memory.
     #[must_use]
     pub fn even(filtered_trials: &[&FilteredTrial], deviation: f64) -> Self {
         let deviation = filtered_trials.iter().map(|filtered| vec![deviation; filtered.len()]).collect();
         Self { deviation, predictor: Vec::new(), scale: 1.0, rows: rows(filtered_trials), noise: [0.0; AR_ORDER + 1] }
     }
 
-    /// The floor that `samples`, residuals of noise alone, leave: a vector of trials each.
+    /// The expected noise that `samples`, residuals of noise alone, leave: a vector of trials each.
     #[must_use]
     pub fn of(filtered_trials: &[&FilteredTrial], samples: &[Vec<Vec<f64>>]) -> Self {
         let mut deviation: Vec<Vec<f64>> =
@@ -81,7 +81,7 @@ impl NoiseModel {
         noise_model
     }
 
-    /// Covariance over the first lags of residuals, a vector a trial, in squares of the floor's deviation.
+    /// Covariance over the first lags of residuals, a vector a trial, in squares of the expected noise's deviation.
     fn covariance<'a>(&self, residuals: impl Iterator<Item = &'a Vec<f64>>) -> [f64; AR_ORDER + 1] {
         let mut covariance = [0.0; AR_ORDER + 1];
         let mut count = 0.0f64;
@@ -97,11 +97,11 @@ impl NoiseModel {
         covariance.map(|sum| sum / count.max(1.0))
     }
 
-    /// The predictor by the Yule-Walker equations, from residuals of a recording or a twin.
+    /// The predictor by the Yule-Walker equations, from residuals of a recording or a replicate.
     ///
     /// A residual that is about as large as noise tells its own memory, and so is worth what it is worth whatever its
     /// colour. One that is far larger is no noise: what is left out would pass for memory and be taken off. There the
-    /// memory is that of the twins.
+    /// memory is that of the replicates.
     fn fit_ar<'a>(&mut self, residuals: impl Iterator<Item = &'a Vec<f64>>) {
         let own = self.covariance(residuals);
         if own[0] <= 0.0 || !own[0].is_finite() {
@@ -178,7 +178,7 @@ fn rows(filtered_trials: &[&FilteredTrial]) -> Vec<Vec<usize>> {
 }
 
 impl Whitener {
-    /// The same floors, the memory told by `residuals`: that of a recording by its own residual, that of a twin by its own.
+    /// The same noise models, the memory told by `residuals`: that of a recording by its own residual, that of a replicate by its own.
     #[must_use]
     pub fn with_fitted_ar(&self, residuals: &[Residual]) -> Self {
         let mut fresh = self.clone();
@@ -191,7 +191,7 @@ impl Whitener {
         fresh
     }
 
-    /// The same, no moment's floor half as much again above that of `before`.
+    /// The same, no moment's expected noise half as much again above that of `before`.
     #[must_use]
     pub fn limited_by(mut self, before: &Self) -> Self {
         let channels = [(&mut self.force, &before.force), (&mut self.effort, &before.effort)];
@@ -204,7 +204,7 @@ impl Whitener {
         self
     }
 
-    /// The same floors without their memory.
+    /// The same noise models without their memory.
     #[must_use]
     pub fn without_autocorrelation(&self) -> Self {
         let plain = |noise_model: &Option<NoiseModel>| {

@@ -54,7 +54,7 @@ fn sentence(
 ) -> String {
     let name = |term: Option<Term>| term.map_or("the answer", |term| term.name());
     let (answer, rival) = (name(pair.0), name(pair.1));
-    // The channel in which either fails by more of its floor.
+    // The channel in which either fails by more of its expected noise.
     let over = |effort: bool| {
         let worse = if effort { left.effort.max(reverse.effort) } else { left.force.max(reverse.force) };
         bench.noise_model(effort).map_or(0.0, |noise_model| worse / noise_model)

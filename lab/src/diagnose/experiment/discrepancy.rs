@@ -10,7 +10,7 @@ use crate::diagnose::signals::filtered_trial::{AnalysisTrial, FilteredTrial};
 /// What a wrong model leaves of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Discrepancy {
-    /// Sum of squares over the floors of both channels, beyond what the right model leaves.
+    /// Sum of squares over the noise models of both channels, beyond what the right model leaves.
     pub energy: f64,
     /// Root mean square in the force reading, N or N m; zero where there is none.
     pub force: f64,
@@ -41,7 +41,7 @@ impl SyntheticRig<'_> {
         }
     }
 
-    /// Even floors, raised so that a row counts for what it is worth.
+    /// Even noise models, raised so that a row counts for what it is worth.
     fn even(&self, trials: &[AnalysisTrial]) -> Whitener {
         let channel = |effort: bool| {
             let at = usize::from(effort);

@@ -1,4 +1,4 @@
-//! The answer and its rivals, each of which may be the truth.
+//! The answer and its alternatives, each of which may be the truth.
 
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use crate::diagnose::bootstrap::problem::IdentificationProblem;
 use crate::diagnose::estimation::whitener::Whitener;
 use crate::diagnose::signals::filtered_trial::AnalysisTrial;
 
-/// The answer and its rivals, each on a bench where it is the truth.
+/// The answer and its alternatives, each on a bench where it is the truth.
 pub struct HypothesisPairs<'a> {
     /// The answer.
     pub answer: SyntheticRig<'a>,

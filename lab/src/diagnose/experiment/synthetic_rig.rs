@@ -13,21 +13,21 @@ use crate::diagnose::thresholds::experiment_synthetic_rig::{LOAD_MARGIN, MAX_EFF
 pub struct SyntheticRig<'a> {
     problem: &'a IdentificationProblem,
     answer: Hypothesis,
-    /// Deviation of each channel's floor in a row of its track.
+    /// Deviation of each channel's expected noise in a row of its track.
     pub(super) noise_models: [Option<f64>; 2],
     /// Rows of each channel's track that are worth one.
     pub(super) memory: [f64; 2],
 }
 
 impl<'a> SyntheticRig<'a> {
-    /// A bench on which `answer` is the truth, its sensors as good as the floors of `whitener` say.
+    /// A bench on which `answer` is the truth, its sensors as good as the noise models of `whitener` say.
     #[must_use]
     pub fn new(problem: &'a IdentificationProblem, whitener: &Whitener, mut answer: Hypothesis) -> Self {
-        // Clocks are no physics; a rival may still move its own.
+        // Clocks are no physics; a alternative may still move its own.
         answer.values[index::FORCE_TIMING] = 0.0;
         answer.values[index::EFFORT_TIMING] = 0.0;
         let noise_models = [whitener.force.as_ref().and_then(typical), whitener.effort.as_ref().and_then(typical)];
-        // White noise behind a Gaussian remembers itself: the sum of its correlation over all rows.
+        // White noise behind a Gaussian is autocorrelated: the sum of its correlation over all rows.
         let memory = |filter: &DerivativeFilter| {
             (2.0 * std::f64::consts::PI.sqrt() * filter.filter_width / filter.step()).max(1.0)
         };
@@ -63,7 +63,7 @@ impl<'a> SyntheticRig<'a> {
         }
     }
 
-    /// The floor of a channel, N or N m.
+    /// The expected noise of a channel, N or N m.
     #[must_use]
     pub fn noise_model(&self, effort: bool) -> Option<f64> {
         self.noise_models[usize::from(effort)]
@@ -212,7 +212,7 @@ impl<'a> SyntheticRig<'a> {
     }
 }
 
-/// The floor of an ordinary row.
+/// The expected noise of an ordinary row.
 fn typical(noise_model: &NoiseModel) -> Option<f64> {
     let mut all: Vec<f64> = noise_model.deviation.iter().flatten().copied().filter(|value| value.is_finite()).collect();
     let middle = all.len() / 2;

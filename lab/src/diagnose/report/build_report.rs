@@ -1,4 +1,4 @@
-//! The answer and its pictures, put together from what the search and the judge found.
+//! The answer and its pictures, put together from what the search and the verdict found.
 
 use super::diagnosis::{
     Alternative, Diagnosis, EffectEvidence, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData, Trace,
@@ -209,7 +209,7 @@ fn effect(parts: &DiagnosisInputs<'_>, fitted_model: &FittedModel, named: &Named
             p_value: named.p_value,
         },
         parameters: parameters.collect(),
-        on_drive: summary::on_drive(spec.name).map(str::to_owned),
+        on_drive: named.term.effect.on_drive().map(str::to_owned),
     }
 }
 

@@ -60,7 +60,7 @@ pub struct Physics {
 pub struct Evidence {
     /// Share of the held-out residual's energy that it takes away: 1 - (rms after / rms before)^2, in its channel.
     pub held_out_gain: f64,
-    /// Probability that chance alone does as much somewhere among all effects, from twins.
+    /// Probability that chance alone does as much somewhere among all effects, from replicates.
     pub p_value: f64,
 }
 
@@ -101,7 +101,7 @@ pub struct Location {
     pub end_s: f64,
     /// Phase of contact.
     pub phase: Phase,
-    /// Share of its channel's energy above the floor that lies in this phase of this trial; start and end are the worst
+    /// Share of its channel's energy above the expected noise that lies in this phase of this trial; start and end are the worst
     /// stretch of it.
     pub share: f64,
     /// "x 6-9 mm, v > 0.05 m/s".
@@ -125,7 +125,7 @@ pub struct FitQuality {
     pub improved: f64,
     /// Always true: nothing is quoted that was fitted.
     pub held_out: bool,
-    /// Share of the energy above the floor, that refitted values leave, which the named physics takes away.
+    /// Share of the energy above the expected noise, that refitted values leave, which the named physics takes away.
     pub explained_share: f64,
     /// Up to which frequency the channel was looked at, Hz.
     pub band_hz: f64,
@@ -157,11 +157,11 @@ pub struct PlotData {
     pub force_unit: &'static str,
     /// A trial and channel each.
     pub traces: Vec<Trace>,
-    /// Shares of the energy above the floor: by phase, depth, speed, time and frequency, before and after.
+    /// Shares of the energy above the expected noise: by phase, depth, speed, time and frequency, before and after.
     pub maps: Vec<BinnedResidual>,
     /// Evidence of every effect that was tried, the strongest first.
     pub scores: Vec<EffectEvidence>,
-    /// The reference to run next, where there are rivals.
+    /// The reference to run next, where there are alternatives.
     pub experiment: Option<Experiment>,
 }
 
@@ -201,11 +201,11 @@ pub struct BinnedResidual {
     pub unit: String,
     /// Label of each bin.
     pub labels: Vec<String>,
-    /// Residual power over the floor's in the bin: one is noise. Refitted values.
+    /// Residual power over the expected noise's in the bin: one is noise. Refitted values.
     pub before: Vec<f64>,
     /// The same with the named physics.
     pub after: Vec<f64>,
-    /// Share of the channel's energy above the floor that lies in the bin, before.
+    /// Share of the channel's energy above the expected noise that lies in the bin, before.
     pub share: Vec<f64>,
 }
 
@@ -214,10 +214,10 @@ pub struct BinnedResidual {
 pub struct EffectEvidence {
     /// Name.
     pub name: &'static str,
-    /// Share of the held-out residual energy above the floor that it takes alone; below zero where it makes things worse.
+    /// Share of the held-out residual energy above the expected noise that it takes alone; below zero where it makes things worse.
     pub held_out_gain: f64,
     /// Probability of as much by chance, for it alone.
     pub p_value: f64,
-    /// "answer", "rival" or "".
+    /// "answer", "alternative" or "".
     pub role: &'static str,
 }

@@ -1,4 +1,4 @@
-//! Where simulation and recording differ: in time, phase, depth, speed and frequency, above the floor of each moment.
+//! Where simulation and recording differ: in time, phase, depth, speed and frequency, above the expected noise of each moment.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -18,11 +18,11 @@ pub struct ChannelResiduals<'a> {
     /// "force" or "effort".
     pub name: &'static str,
     effort: bool,
-    /// Residual before, after, and its floor, row by row, a vector a trial.
+    /// Residual before, after, and its expected noise, row by row, a vector a trial.
     before: Vec<Vec<f64>>,
     after: Vec<Vec<f64>>,
     noise_model: Vec<Vec<f64>>,
-    /// Residuals of a twin.
+    /// Residuals of a replicate.
     replicate: Vec<Vec<f64>>,
     phases: Vec<Vec<Phase>>,
     depths: Vec<Vec<f64>>,
@@ -81,7 +81,7 @@ impl<'a> ChannelResiduals<'a> {
         self.before[trial][at].powi(2) - self.noise_model[trial][at].powi(2)
     }
 
-    /// Energy above the floor, the sum of every row's square less that of its floor.
+    /// Energy above the expected noise, the sum of every row's square less that of its expected noise.
     #[must_use]
     pub fn energy(&self) -> f64 {
         self.rows().map(|row| self.above(row)).sum::<f64>().max(0.0)

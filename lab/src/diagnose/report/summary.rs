@@ -72,21 +72,3 @@ fn listed(names: &[String]) -> String {
         [most @ .., last] => format!("{} and {last}", most.join(", ")),
     }
 }
-
-/// What of the library carries an effect on the drive, where something does.
-#[must_use]
-pub fn on_drive(name: &str) -> Option<&'static str> {
-    match name {
-        "hunt_crossley_damping" => {
-            Some("ParameterRls with ContactModel::GrowingDamping follows K, B and alpha: regressor x v")
-        }
-        "tool_inertia" => Some("ParameterRls with ContactModel::ToolMass follows K, B and the mass: regressor a"),
-        "force_bias" => Some(
-            "ParameterRls with ContactModel::BiasedKelvinVoigt follows K, B and the bias: regressor 1; or tare before touching",
-        ),
-        "time_varying_stiffness" => {
-            Some("CusumRls follows a stiffness that jumps, AdaptiveWindow one that drifts: regressors x and v")
-        }
-        _ => None,
-    }
-}

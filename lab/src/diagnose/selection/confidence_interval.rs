@@ -1,4 +1,4 @@
-//! How far a value can be trusted: by what twins of the answer make of it.
+//! How far a value can be trusted: by what replicates of the answer make of it.
 
 use statrs::statistics::Statistics as _;
 
@@ -9,7 +9,7 @@ use crate::diagnose::estimation::levenberg_marquardt::{self, FitData};
 use crate::diagnose::linalg::solve;
 use crate::diagnose::model::{Channels, index};
 
-/// A value without the bias that twins show, and its 95 % interval.
+/// A value without the bias that replicates show, and its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalEstimate {
     /// The value.
@@ -20,8 +20,8 @@ pub struct IntervalEstimate {
 
 /// Of every value of `fitted_model`'s model.
 ///
-/// A twin is made from known values; what the fit makes of it, less those, is the error of the method: its mean is a bias,
-/// which is taken off, its spread the interval. What the recording shows beyond the twins' residual widens the interval, and
+/// A replicate is made from known values; what the fit makes of it, less those, is the error of the method: its mean is a bias,
+/// which is taken off, its spread the interval. What the recording shows beyond the replicates' residual widens the interval, and
 /// so does what two halves of it disagree about, what the law leaves beside what it takes, and a fraction of a sample that
 /// the fit gave to a clock: it may belong to the value as well.
 #[must_use]
@@ -51,7 +51,7 @@ pub fn estimates(
             };
             let half = noise.hypot(apart).hypot(laws[at]) + clocks[at];
             let (low, high) = (axes[at].low, axes[at].high);
-            // Twins of a drive that was cut keep its commands, which no filter has passed, beside a motion that has passed
+            // Replicates of a drive that was cut keep its commands, which no filter has passed, beside a motion that has passed
             // one: what they are biased by is not what the recording is.
             let fitted = if cut {
                 fitted_model.values[at]
@@ -59,7 +59,7 @@ pub fn estimates(
                 near(&fitted_model.model, &fitted_model.values, at, fitted_model.generating_values[at] - mean)
             };
             let value = fitted.clamp(low, high);
-            // What was fitted is not excluded by what twins say of its bias: they are only as good as the law.
+            // What was fitted is not excluded by what replicates say of its bias: they are only as good as the law.
             let (first, last) =
                 ((value - half).min(fitted_model.values[at]), (value + half).max(fitted_model.values[at]));
             IntervalEstimate { value, ends: [first.max(low), last.min(high)] }

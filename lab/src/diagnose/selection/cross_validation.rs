@@ -16,7 +16,7 @@ use crate::effects::{ExcitationStats, Place};
 pub struct HeldOut {
     /// Whitened energy over all rows.
     pub energy: f64,
-    /// Mean square of the residual over its floor, its memory left in, of force and effort.
+    /// Mean square of the residual over its expected noise, its memory left in, of force and effort.
     pub powers: [f64; 2],
     /// Residuals of every trial, each row by the values of the other half.
     pub residuals: Vec<Residual>,
@@ -101,7 +101,7 @@ pub fn as_given(problem: &IdentificationProblem, whitener: &Whitener, model: &Mo
     HeldOut { energy: energy(&whitener.whiten(&residuals)), powers, residuals, taught: Vec::new() }
 }
 
-/// Root mean square of the floor over the rows of a channel that were seen whole; `None` where the channel is not there.
+/// Root mean square of the expected noise over the rows of a channel that were seen whole; `None` where the channel is not there.
 #[must_use]
 pub fn expected_noise_rms(problem: &IdentificationProblem, whitener: &Whitener, effort: bool) -> Option<f64> {
     let noise_model = if effort { whitener.effort.as_ref()? } else { whitener.force.as_ref()? };

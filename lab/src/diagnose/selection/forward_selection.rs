@@ -30,9 +30,9 @@ pub struct Candidate {
     pub energy: f64,
     /// The same on data that the fit did not see; infinite where that was not asked.
     pub held_out: f64,
-    /// Power over the floor's there, of force and effort.
+    /// Power over the expected noise's there, of force and effort.
     pub powers: [f64; 2],
-    /// Energy that it takes from twins, where nothing is missing.
+    /// Energy that it takes from replicates, where nothing is missing.
     pub chance_gain: f64,
     /// Probability of as much by chance, for it alone.
     pub p_value: f64,
@@ -46,7 +46,7 @@ pub struct SelectionStep {
     pub fitted_model: FittedModel,
     /// Held-out energy of the stand's own model.
     pub held_out: f64,
-    /// Power over the floor's there, of force and effort.
+    /// Power over the expected noise's there, of force and effort.
     pub powers: [f64; 2],
     /// What was tried, the best first.
     pub candidates: Vec<Candidate>,
@@ -59,7 +59,7 @@ pub struct SelectionStep {
 pub struct RemainingStructure {
     /// Probability of as much by chance.
     pub p_value: f64,
-    /// Whitened energy over what twins leave.
+    /// Whitened energy over what replicates leave.
     pub energy_ratio: f64,
     /// What found it.
     pub found_by: &'static str,
@@ -105,7 +105,7 @@ fn refine_form(
     let data = FitData { trials: &problem.sampler.trials, whitener: &fitted_model.whitener, rows: None };
     let projected = ProjectedResidual::of(data, &fitted_model.model, &fitted_model.values, &fitted_model.excitation);
     let finer = |term: &Term| term.refines() && term.name() == candidate.term.name();
-    // Far from the floor any bend takes a little: a corner that is round takes most of what the sharp one left.
+    // Far from the expected noise any bend takes a little: a corner that is round takes most of what the sharp one left.
     let left = (candidate.energy - mean_replicate_energy(fitted_model)).max(0.0);
     let own = candidate.energy + candidate.term.price() - REPLACEMENT_CHI2_MARGIN - MIN_REFINED_FORM_GAIN * left;
     let scores = projected.scores(&fitted_model.excitation, &finer);
@@ -195,7 +195,7 @@ fn null_distributions(fitted_model: &FittedModel, scores: &[&EffectScore]) -> Ve
     scores.iter().map(null).collect()
 }
 
-/// The distribution, over twins, of the farthest that any of `scores` lies beyond its own.
+/// The distribution, over replicates, of the farthest that any of `scores` lies beyond its own.
 fn max_deviation_null(
     fitted_model: &FittedModel,
     scores: &[&EffectScore],
@@ -224,7 +224,7 @@ fn candidates(problem: &IdentificationProblem, fitted_model: &FittedModel) -> Ve
             let score = &projected.refine_start(score, &fitted_model.excitation);
             let model = fitted_model.model.with(score.term);
             let fit = problem.fit_from_surfaces(&data, fitted_model, &model, &score.values);
-            // Twins were asked by projection alone: a search that goes on from there is not held against them in full.
+            // Replicates were asked by projection alone: a search that goes on from there is not held against them in full.
             let gain = score.gain.max(0.5 * (fitted_model.summary.energy - fit.energy));
             let p_any = sidak_correction(farthest.p_value(null.beyond(gain)), draws);
             let p_value = null.p_value(gain);
@@ -274,7 +274,7 @@ fn sidak_correction(p_value: f64, draws: f64) -> f64 {
     -(draws * (-p_value).ln_1p()).exp_m1()
 }
 
-/// Mean energy that `term` takes from twins: where they were not asked, that of white noise.
+/// Mean energy that `term` takes from replicates: where they were not asked, that of white noise.
 pub fn chance_gain(fitted_model: &FittedModel, term: &Term) -> f64 {
     let gains: Vec<f64> = fitted_model.replicates.iter().filter_map(|replicate| replicate.gain(term)).collect();
     if gains.is_empty() {
@@ -317,7 +317,7 @@ fn is_identifiable(problem: &IdentificationProblem, candidate: &Candidate) -> bo
     !effect.starts(form, &excitation).is_empty() || effect.frequency_search(form, &excitation).is_some()
 }
 
-/// Whether `candidate` is large enough to matter: it takes something where there is more than twins leave, and where that
+/// Whether `candidate` is large enough to matter: it takes something where there is more than replicates leave, and where that
 /// is not the encoder's.
 fn is_large_enough(round: &SelectionStep, within_quantization: [bool; 2], candidate: &Candidate) -> bool {
     let ratios = round.fitted_model.power_ratios();
@@ -329,7 +329,7 @@ fn is_large_enough(round: &SelectionStep, within_quantization: [bool; 2], candid
     })
 }
 
-/// Mean energy that twins leave.
+/// Mean energy that replicates leave.
 pub fn mean_replicate_energy(fitted_model: &FittedModel) -> f64 {
     fitted_model.replicates.iter().map(|summary| summary.energy).sum::<f64>()
         / fitted_model.replicates.len().max(1) as f64

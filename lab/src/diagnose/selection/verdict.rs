@@ -43,11 +43,11 @@ pub struct Assessment {
     pub named: Vec<NamedEffect>,
     /// What this data cannot tell from each of the named.
     pub alternatives: Vec<FittedAlternative>,
-    /// Share of the whitened energy above the floor that the named effects take.
+    /// Share of the whitened energy above the expected noise that the named effects take.
     pub share: f64,
     /// Whether structure is left.
     pub left: bool,
-    /// The nominal model, fitted under the last stand's floor.
+    /// The nominal model, fitted under the last stand's expected noise.
     pub nominal: FitResult,
     /// The rig file as given, without a fit.
     pub as_given: HeldOut,
@@ -77,9 +77,9 @@ pub struct NamedEffect {
 pub struct FittedAlternative {
     /// The effect that it would stand for.
     pub instead_of: Term,
-    /// The rival.
+    /// The alternative.
     pub term: Term,
-    /// Model and values with the rival in its place.
+    /// Model and values with the alternative in its place.
     pub model: Model,
     /// Fitted values of that model.
     pub fit: FitResult,
@@ -87,7 +87,7 @@ pub struct FittedAlternative {
     pub chance: f64,
 }
 
-/// Judges `search`; exchanges an effect for a rival that does better.
+/// Judges `search`; exchanges an effect for a alternative that does better.
 pub fn assess(problem: &IdentificationProblem, search: &mut SelectionPath, say: &dyn Fn(&str)) -> Option<Assessment> {
     say("what else would explain it");
     let alternatives = exchange_effects(problem, search, say)?;
@@ -119,7 +119,7 @@ pub fn assess(problem: &IdentificationProblem, search: &mut SelectionPath, say: 
     Some(Assessment { verdict, named, alternatives, share, left, nominal, as_given, refitted, improved })
 }
 
-/// Exchanges effects for rivals that do better, takes off those that are not needed; what then could stand for each.
+/// Exchanges effects for alternatives that do better, takes off those that are not needed; what then could stand for each.
 fn exchange_effects(
     problem: &IdentificationProblem,
     search: &mut SelectionPath,
@@ -162,7 +162,7 @@ fn has_structure_left(problem: &IdentificationProblem, round: &SelectionStep, im
     let excess = (fitted_model.summary.energy - forward_selection::mean_replicate_energy(fitted_model))
         .max(residual_test)
         / fitted_model.summary.energy.max(f64::MIN_POSITIVE);
-    // What twins leave can differ in its pattern; where it is no larger, nothing that matters is left.
+    // What replicates leave can differ in its pattern; where it is no larger, nothing that matters is left.
     let beyond = round.structure.p_value < FALSE_ALARM_RATE && excess > MIN_EXCESS_FRACTION;
     let (quantization_power, within_quantization) =
         (problem.quantization_power(&fitted_model.values), problem.within_quantization(fitted_model));
@@ -187,7 +187,7 @@ fn is_worse(problem: &IdentificationProblem, refitted: &HeldOut, improved: &Held
 /// Takes off, the least first, effects beside others without which unseen data are left as well or nearly so; whether there were
 /// any.
 ///
-/// Where the residual is far from the floor any bend of a curve takes something of it, and each effect that was taken up may
+/// Where the residual is far from the expected noise any bend of a curve takes something of it, and each effect that was taken up may
 /// since have lost what it was taken up for.
 fn prune(problem: &IdentificationProblem, search: &mut SelectionPath, say: &dyn Fn(&str)) -> bool {
     let mut any = false;
@@ -335,7 +335,7 @@ fn named(problem: &IdentificationProblem, search: &SelectionPath) -> Vec<NamedEf
     named
 }
 
-/// Those rivals that the data do not refute; one an effect.
+/// Those alternatives that the data do not refute; one an effect.
 fn unrefuted(
     fitted_model: &FittedModel,
     named: &[NamedEffect],
@@ -350,7 +350,7 @@ fn unrefuted(
         let margin = ALTERNATIVE_CHI2_MARGIN * inflation + ALTERNATIVE_REL_MARGIN * gain;
         let other = named.iter().all(|n| n.term.name() != alternative.term.name());
         let fresh = kept.iter().all(|k| k.term.name() != alternative.term.name());
-        // What leaves almost as much as nothing at all is no rival.
+        // What leaves almost as much as nothing at all is no alternative.
         let explains = alternative.fit.energy < fitted_model.summary.energy + 0.7 * gain;
         if other && fresh && explains && alternative.fit.energy - fitted_model.summary.energy < margin {
             kept.push(alternative);

@@ -80,7 +80,7 @@ pub struct PrefilteredTrial {
     pub second_filter: DerivativeFilter,
 }
 
-/// A trial through both lenses: the contact is looked at as sharply as its force allows, the drive as its acceleration does.
+/// A trial through both filters: the contact is analysed with as wide a band as its force allows, the drive as its acceleration does.
 #[derive(Debug, Clone)]
 pub struct AnalysisTrial {
     /// Which of the trials.

@@ -34,7 +34,7 @@ fn without_mains_tone(rig: &Rig, raw: UniformTrial, trial: &Recording) -> Unifor
     UniformTrial { figures: Figures::of(rig, &quiet), hum: Some(tone.frequency), ..raw }
 }
 
-/// `uniform_trials` at a rate that the filters need: twins of a million rows would show nothing that those of their means do not.
+/// `uniform_trials` at a rate that the filters need: replicates of a million rows would show nothing that those of their means do not.
 pub fn decimate_to_need(rig: &Rig, uniform_trials: Vec<UniformTrial>) -> Vec<UniformTrial> {
     let (contact, drive) = analysis_filters(rig, &uniform_trials);
     let corner = contact.first().cutoff_hz().max(drive.first().cutoff_hz());

@@ -52,6 +52,10 @@ impl Effect for HuntCrossleyDamping {
         &SPEC
     }
 
+    fn on_drive(&self) -> Option<&'static str> {
+        Some("ParameterRls with ContactModel::GrowingDamping follows K, B and alpha: regressor x v")
+    }
+
     fn refines(&self, form: usize) -> bool {
         form == 1
     }

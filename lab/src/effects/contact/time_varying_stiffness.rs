@@ -63,6 +63,10 @@ impl Effect for TimeVaryingStiffness {
         &SPEC
     }
 
+    fn on_drive(&self) -> Option<&'static str> {
+        Some("CusumRls follows a stiffness that jumps, AdaptiveWindow one that drifts: regressors x and v")
+    }
+
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let end = scene.duration;
         if !scene.separates_time_from_depth() {

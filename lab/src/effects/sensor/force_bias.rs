@@ -33,6 +33,12 @@ impl Effect for ForceBias {
         &SPEC
     }
 
+    fn on_drive(&self) -> Option<&'static str> {
+        Some(
+            "ParameterRls with ContactModel::BiasedKelvinVoigt follows K, B and the bias: regressor 1; or tare before touching",
+        )
+    }
+
     fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // Without a free moment it is a surface that lies elsewhere.
         if scene.is_bilateral || scene.shows_sensor_zero() {

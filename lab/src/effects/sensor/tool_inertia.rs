@@ -33,6 +33,10 @@ impl Effect for ToolInertia {
         &SPEC
     }
 
+    fn on_drive(&self) -> Option<&'static str> {
+        Some("ParameterRls with ContactModel::ToolMass follows K, B and the mass: regressor a")
+    }
+
     fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         vec![Start::sized(&[0.02 * scene.force / scene.acceleration.max(f64::MIN_POSITIVE)], &[0])]
     }

@@ -1,4 +1,4 @@
-//! The evidence against rivals, and the experiment that would decide.
+//! The evidence against alternatives, and the experiment that would decide.
 
 use super::super::diagnosis::{Alternative, Diagnosis, EffectEvidence, PlotData, Verdict};
 use super::axis::across;
@@ -11,7 +11,7 @@ const BAR_HEIGHT_PX: usize = 38;
 /// Bars without a role beyond these are folded away.
 const MAX_BARS: usize = 8;
 
-/// Bars, rivals and reference; nothing where no effect was tried.
+/// Bars, alternatives and reference; nothing where no effect was tried.
 pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
     if pictures.scores.is_empty() && answer.alternatives.is_empty() && pictures.experiment.is_none() {
         return html! { p.nothing { "No single effect is weighed against another here: there is no evidence for any of them." } };
