@@ -1,6 +1,5 @@
-//! The table of `palpate` beside its baselines: `cargo run --release -p palpate-baselines`; with `--document` its rows of
-//! docs/profile.md are
-//! written there.
+//! The table of `palpate` beside its baselines: `cargo run --release -p palpate-baselines`; with `--document` its rows are
+//! written into docs/profile.md.
 
 #[cfg(not(target_os = "none"))]
 mod accuracy;

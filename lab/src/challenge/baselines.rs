@@ -34,7 +34,7 @@ pub struct BaselineSummary {
     pub who: String,
     /// Cases with nothing missing, and those of them in which it names something.
     pub alarms: (usize, usize),
-    /// SingleEffectCounts effects at least as large as the floor, and those of them named, and nothing else.
+    /// Single effects at least as large as the floor, and those of them named, and nothing else.
     pub right: (usize, usize),
     /// RMS left of single effects at least as large as the floor, over that of the refitted nominal law, median.
     pub left: f64,

@@ -50,7 +50,7 @@ pub struct CaseScore {
     pub before: Option<f64>,
     /// The same with the named physics.
     pub after: Option<f64>,
-    /// ParameterStatistics of the same law, where the answer is right.
+    /// Parameters of the same law, where the answer is right.
     pub values: Vec<ParameterScore>,
     /// From the command's start to its end.
     pub seconds: f64,

@@ -19,7 +19,7 @@ pub struct ChallengeScore {
     pub sealed_sha256: String,
     /// How many.
     pub cases: usize,
-    /// NoEffectCounts is missing.
+    /// Nothing is missing.
     pub none: NoEffectCounts,
     /// One effect of the list.
     pub single: SingleEffectCounts,
@@ -112,7 +112,7 @@ pub struct OutsideCounts {
     pub owned: usize,
 }
 
-/// ParameterStatistics of effects that were named rightly.
+/// Parameters of effects that were named rightly.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ParameterStatistics {
     /// Relative, absolute value.

@@ -25,7 +25,7 @@ pub struct GeneratedCase {
 /// and those that could not be drawn, with why. `python` has the simulators of others, where there are any to be asked.
 ///
 /// # Errors
-/// NoEffectCounts can be written to `home`.
+/// Nothing can be written to `home`.
 pub fn generate_all(
     entries: &[ListedCase],
     seed: u64,

@@ -61,7 +61,7 @@ fn headline(challenge: &ChallengeScore) -> String {
     let mut parts = Vec::new();
     if challenge.none.n > 0 {
         let quiet = challenge.none.n - challenge.none.false_alarms;
-        parts.push(format!("NoEffectCounts missing: {quiet} of {} left alone.", challenge.none.n));
+        parts.push(format!("Nothing missing: {quiet} of {} left alone.", challenge.none.n));
     }
     if !large.is_empty() {
         let of = large.len();

@@ -1,4 +1,4 @@
-//! ParameterStatistics that mean the same in the cases and in the diagnosis, under names of their own.
+//! Parameters that mean the same in the cases and in the diagnosis, under names of their own.
 
 use super::case_score::ParameterScore;
 use super::diagnosis_json::PhysicsJson;

@@ -74,7 +74,7 @@ pub fn targets(challenge: &ChallengeScore) -> Vec<Target> {
 #[must_use]
 pub fn beside(challenge: &ChallengeScore) -> String {
     format!(
-        "Names offered where something was detected: {:.2} in the mean (aim 1.5). ParameterStatistics: median error {:.1} % (aim 5 %). ResidualStatistics over \
+        "Names offered where something was detected: {:.2} in the mean (aim 1.5). Parameters: median error {:.1} % (aim 5 %). Residual over \
          the floor where rightly named, median: {:.2} before, {:.2} after (aim 1.2). A diagnosis took {:.1} s (median).",
         challenge.single.mean_set_size,
         100.0 * challenge.parameters.median_error,

@@ -37,12 +37,12 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
             h2 { "Concealed means that no eye sees it" }
             p {
                 "Case " (row.index) ": " (row.truth.join(" and ").replace('_', " ")) " of " (format!("{:.2}", row.strength))
-                " of the floor. RecordingScores force and the simulation without it, values refitted, lie over one another; row by row the difference \
+                " of the floor. Recorded force and the simulation without it, values refitted, lie over one another; row by row the difference \
                  is noise, and the effect, as the tool models it, runs within. The tool says: " strong { (picture.named) }
             }
             (panel("Force over time", picture.unit, &picture.time, &[("recorded", &picture.recorded), ("simulated", &picture.simulated)]))
             p.legend { span.recorded { "● recorded" } "  " span.simulated { "━ simulated without the effect" } }
-            (panel("RecordingScores less simulated", picture.unit, &picture.time,
+            (panel("Recorded less simulated", picture.unit, &picture.time,
                 &[("recorded", &difference(&picture)), ("effect", &picture.effect)]))
             p.legend {
                 span.recorded { "● recorded less simulated, deviation " (format!("{:.2e} {}", picture.deviation, picture.unit)) } "  "

@@ -168,7 +168,7 @@ impl SpecimenScore {
         words
     }
 
-    /// ResidualPair with the named physics over that of the refitted nominal law, on the trials kept back; none where nothing is
+    /// Residual with the named physics over that of the refitted nominal law, on the trials kept back; none where nothing is
     /// named.
     #[must_use]
     pub fn left(&self) -> Option<f64> {
