@@ -101,7 +101,7 @@ fn challenge(home: &Path, recordings: &str, root: Option<&Path>) -> Output {
     if let Some(root) = root {
         command.env(VARIABLE, root);
     }
-    let arguments = ["challenge", "--cases", "0", "--keep", "kept", "--json", "score.json", "--report", "page.html"];
+    let arguments = ["challenge", "--cases", "0", "--out", "kept", "--json", "score.json", "--report", "page.html"];
     command.current_dir(home).args(arguments).args(["--recordings", recordings]).output().unwrap()
 }
 
@@ -127,7 +127,7 @@ fn three_specimens_are_sealed_diagnosed_opened_and_scored_on_trials_that_were_ke
     let kept = home.path().join("kept");
     let sealed = fs::read_to_string(kept.join("answers.jsonl")).unwrap();
     assert_eq!(sealed.lines().count(), 3);
-    assert!(said.find(&score.sealed_sha256).unwrap() < said.find("held out").unwrap(), "{said}");
+    assert!(said.find(&score.sealed_sha256).unwrap() < said.find("recorded-").unwrap(), "{said}");
     let switch = kept.join("recorded-00");
     let mut files: Vec<_> =
         fs::read_dir(&switch).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

@@ -29,7 +29,7 @@ const MOST_EFFECTS: usize = 4;
 /// What the criterion names in the case that lies in `folder`.
 ///
 /// # Errors
-/// CaseFiles at fault.
+/// Files at fault.
 pub fn answer(folder: &Path) -> Result<BaselineResult> {
     let start = Instant::now();
     let CaseFiles { rig, origin, trials } = case_files::read(folder)?;

@@ -2,14 +2,15 @@
 
 use std::collections::BTreeSet;
 
+use palpate_cases::SimulatorKind;
 use palpate_cases::excitation::Excitation;
 use palpate_cases::sensors::SensorGrade;
 use palpate_cases::truth::CaseKind;
-use palpate_cases::{SimulatorKind, Truth};
 use serde::{Deserialize, Serialize};
 
 use super::baselines::BaselineScore;
 use super::diagnosis_json::DiagnosisJson;
+use super::drawn_answer::DrawnAnswer;
 use super::parameter_score;
 
 /// The name under which an answer owns that nothing of its list explains the rest.
@@ -89,13 +90,13 @@ fn set(names: &[String]) -> BTreeSet<&str> {
 impl CaseScore {
     /// Holds what was `told` of a case, or why nothing was, against its `truth`.
     #[must_use]
-    pub fn score(truth: &Truth, diagnosis: Result<DiagnosisJson, String>, seconds: f64) -> Self {
+    pub fn score(truth: &DrawnAnswer, diagnosis: Result<&DiagnosisJson, &str>, seconds: f64) -> Self {
         let mut row = Self {
             seed: truth.seed,
             index: truth.index,
             source: truth.source,
             kind: truth.kind,
-            truth: truth.effects.iter().map(|effect| effect.name.to_owned()).collect(),
+            truth: truth.effects.iter().map(|effect| effect.name.clone()).collect(),
             asked: truth.effects.iter().map(|effect| effect.strength_asked).fold(0.0, f64::max),
             strength: truth.strength,
             grade: truth.grade,
@@ -112,20 +113,30 @@ impl CaseScore {
             failure: None,
         };
         match diagnosis {
-            Err(failure) => row.failure = Some(failure),
+            Err(failure) => row.failure = Some(failure.to_owned()),
             Ok(diagnosis) => {
-                row.named = diagnosis.physics.iter().map(|physics| physics.name.clone()).collect();
-                row.alternatives =
-                    diagnosis.alternatives.iter().map(|alternative| alternative.physics.clone()).collect();
+                row.named = diagnosis.names();
+                row.alternatives = diagnosis.alternative_names();
                 row.before = diagnosis.fit.over_floor(diagnosis.fit.refitted);
                 row.after = diagnosis.fit.over_floor(diagnosis.fit.improved);
                 if truth.kind == CaseKind::Single && row.is_right() {
                     row.values = parameter_score::compare(truth, &diagnosis.physics);
                 }
-                row.verdict = Some(diagnosis.verdict);
+                row.verdict = Some(diagnosis.verdict.clone());
             }
         }
         row
+    }
+
+    /// Whether what it says is true is what `answer` says.
+    #[must_use]
+    pub fn states(&self, answer: &DrawnAnswer) -> bool {
+        let same = |row: Self| {
+            let facts = |row: &Self| (row.seed, row.index, row.source, row.kind, row.asked, row.strength, row.effort);
+            facts(&row) == facts(self)
+                && (row.truth, row.grade, row.excitation) == (self.truth.clone(), self.grade, self.excitation)
+        };
+        same(Self::score(answer, Err(""), 0.0))
     }
 
     /// One effect of the list, at least as large as the floor.
@@ -200,5 +211,114 @@ impl CaseScore {
             self.seconds,
             self.failure.as_ref().map(|why| format!(": {why}")).unwrap_or_default()
         )
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// A case of `kind` that conceals `truth` of `strength`.
+    pub fn answer(kind: &str, truth: &[&str], strength: f64) -> DrawnAnswer {
+        let effect = |name: &&str| json!({"name": name, "parameters": [], "strength_asked": strength});
+        let answer = json!({
+            "source": "own", "seed": 1, "index": 7, "kind": kind, "strength": strength, "grade": "fine", "reference": "rich",
+            "effects": truth.iter().map(effect).collect::<Vec<_>>(), "channels": ["position_m", "force_N", "effort_N"],
+        });
+        serde_json::from_value(answer).unwrap()
+    }
+
+    /// A diagnosis that names `named` and leaves `alternatives` open, names of each joined by `+`.
+    pub fn diagnosis(named: &[&str], alternatives: &[&str]) -> DiagnosisJson {
+        let physics: Vec<_> = named.iter().map(|name| json!({"name": name, "parameters": []})).collect();
+        let alternatives: Vec<_> =
+            alternatives.iter().map(|names| json!({"physics": names.split('+').collect::<Vec<_>>()})).collect();
+        let fit = json!({"unit": "N", "noise_floor": 0.5, "refitted": 2.0, "improved": 0.6});
+        let schema = super::super::diagnosis_json::SCHEMA;
+        let all =
+            json!({"schema": schema, "verdict": "explained", "physics": physics, "rivals": alternatives, "fit": fit});
+        serde_json::from_value(all).unwrap()
+    }
+
+    /// Every kind of answer against every kind of truth: detected, right, within, false alarm, unknown reported.
+    #[test]
+    fn every_answer_against_every_truth() {
+        let (one, two, outside) = (&["adhesion"][..], &["adhesion", "cogging"][..], &["reflex"][..]);
+        let table: &[(&str, &[&str], &[&str], &[&str], &str)] = &[
+            // kind, concealed, named, alternatives: what holds
+            ("none", &[], &[], &[], "right within"),
+            ("none", &[], &["unknown"], &[], "detected alarm unknown"),
+            ("none", &[], &["adhesion"], &[], "detected alarm"),
+            ("none", &[], &["adhesion"], &["cogging"], "detected alarm"),
+            ("single", one, &[], &[], ""),
+            ("single", one, &[], &["adhesion"], ""),
+            ("single", one, &["adhesion"], &[], "detected right within"),
+            ("single", one, &["adhesion", "adhesion"], &[], "detected right within"),
+            ("single", one, &["adhesion"], &["cogging"], "detected right within"),
+            ("single", one, &["cogging"], &[], "detected"),
+            ("single", one, &["cogging"], &["adhesion"], "detected within"),
+            ("single", one, &["cogging"], &["backlash"], "detected"),
+            ("single", one, &["unknown"], &[], "detected unknown"),
+            ("single", one, &["unknown"], &["adhesion"], "detected within unknown"),
+            ("single", one, &["adhesion", "cogging"], &[], "detected within"),
+            ("single", one, &["adhesion", "unknown"], &[], "detected within unknown"),
+            ("single", one, &["cogging", "unknown"], &[], "detected unknown"),
+            ("pair", two, &[], &[], ""),
+            ("pair", two, &["cogging", "adhesion"], &[], "detected right within"),
+            ("pair", two, &["adhesion"], &[], "detected"),
+            ("pair", two, &["adhesion"], &["backlash"], "detected"),
+            ("pair", two, &["adhesion"], &["cogging"], "detected within"),
+            ("pair", two, &["backlash"], &["adhesion+cogging"], "detected within"),
+            ("pair", two, &["adhesion", "unknown"], &[], "detected unknown"),
+            ("pair", two, &["adhesion", "cogging", "backlash"], &[], "detected within"),
+            ("outside", outside, &[], &[], ""),
+            ("outside", outside, &["unknown"], &[], "detected right within unknown"),
+            ("outside", outside, &["unknown", "unknown"], &[], "detected right within unknown"),
+            ("outside", outside, &["adhesion"], &[], "detected"),
+            ("outside", outside, &["adhesion"], &["unknown"], "detected"),
+            ("outside", outside, &["adhesion", "unknown"], &[], "detected unknown"),
+        ];
+        for (kind, truth, named, alternatives, expected) in table {
+            let row = CaseScore::score(&answer(kind, truth, 2.0), Ok(&diagnosis(named, alternatives)), 1.0);
+            let holds = [
+                (row.is_detected(), "detected"),
+                (row.is_right(), "right"),
+                (row.is_within(), "within"),
+                (row.is_false_alarm(), "alarm"),
+                (row.is_owned(), "unknown"),
+            ];
+            let found: Vec<&str> = holds.into_iter().filter(|(is, _)| *is).map(|(_, word)| word).collect();
+            assert_eq!(found.join(" "), *expected, "{kind} {truth:?}: {named:?} {alternatives:?}");
+        }
+    }
+
+    #[test]
+    fn no_answer_is_never_right() {
+        for (kind, truth) in [("none", &[][..]), ("single", &["adhesion"]), ("outside", &["reflex"])] {
+            let row = CaseScore::score(&answer(kind, truth, 2.0), Err("it broke"), 1.0);
+            let is = [row.is_right(), row.is_within(), row.is_detected(), row.is_false_alarm(), row.is_owned()];
+            assert_eq!(is, [false; 5], "{kind}");
+            assert_eq!(row.failure.as_deref(), Some("it broke"));
+        }
+    }
+
+    #[test]
+    fn a_row_holds_what_answer_and_diagnosis_say() {
+        let truth = answer("single", &["adhesion"], 0.7);
+        let row = CaseScore::score(&truth, Ok(&diagnosis(&["adhesion"], &["cogging+backlash"])), 3.5);
+        assert_eq!((row.before, row.after, row.seconds), (Some(4.0), Some(1.2), 3.5));
+        assert_eq!((row.seed, row.index, row.strength, row.effort), (1, 7, 0.7, true));
+        assert!(!row.is_large() && row.states(&truth));
+        assert!(CaseScore::score(&answer("single", &["adhesion"], 1.0), Err(""), 0.0).is_large());
+        assert!(!CaseScore::score(&answer("pair", &["adhesion", "cogging"], 1.0), Err(""), 0.0).is_large());
+        for other in [
+            answer("single", &["cogging"], 0.7),
+            answer("single", &["adhesion"], 0.8),
+            answer("pair", &["adhesion"], 0.7),
+        ] {
+            assert!(!row.states(&other), "{other:?}");
+        }
+        assert_eq!(row.offered(), BTreeSet::from(["adhesion", "backlash", "cogging"]));
     }
 }

@@ -4,9 +4,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
-use clap::{Args, ValueEnum};
-use palpate_cases::SimulatorKind;
+use clap::Args;
 
+use super::case_source::CaseSource;
 use super::challenge_score::ChallengeScore;
 use super::recordings::table::{section, table};
 use super::{page, protocol, summary};
@@ -17,7 +17,7 @@ use crate::qemu_bench::project;
 /// Put the diagnosis to recordings whose missing effect is concealed from it
 #[derive(Debug, Clone, Args)]
 pub struct ChallengeArgs {
-    /// How many of the 1580 cases, an even sample; all of them take hours. None: real recordings alone
+    /// How many of the 1580 cases, an even sample; all of them take hours. 0: only real recordings and the cases of folders
     #[arg(long, value_name = "N", default_value_t = 60)]
     pub cases: usize,
     /// Seed of the cases: the same seed, the same recordings
@@ -29,54 +29,29 @@ pub struct ChallengeArgs {
     /// Write the page
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    /// Simulators that play the cases; all where left out
-    #[arg(long, value_name = "NAME", value_enum, value_delimiter = ',')]
-    pub source: Vec<SimulatorChoice>,
+    /// Where cases come from: simulators (own, mujoco, drake, exudyn; all where left out), and folders of another author
+    /// (NNN/rig.toml, NNN/trial-*.csv, truth.json with `truth` and `also` of each case)
+    #[arg(long, value_name = "NAME|DIR", value_delimiter = ',')]
+    pub source: Vec<CaseSource>,
     /// Real recordings beside the cases: `all`, `none`, or those whose names begin so, as `tissue_indentation/soft`
     #[arg(long, value_name = "NAME", value_delimiter = ',', default_value = "all")]
     pub recordings: Vec<String>,
-    /// Have plain BIC, PySINDy and SysIdentPy look at the same files
-    #[arg(long)]
-    pub rivals: bool,
-    /// Begin no case after so many minutes of diagnosing: those not reached are left out, and said so
+    /// Run the baselines on the same files: plain BIC, PySINDy and SysIdentPy
+    #[arg(long, alias = "rivals")]
+    pub baselines: bool,
+    /// Begin no case after so many minutes of diagnosing; those not reached are listed as left out
     #[arg(long, value_name = "N")]
     pub minutes: Option<u64>,
-    /// Keep recordings, sealed answers and diagnoses here
-    #[arg(long, value_name = "DIR")]
-    pub keep: Option<PathBuf>,
+    /// Keep recordings, committed answers and diagnoses here; a run that was interrupted goes on from them
+    #[arg(long, alias = "keep", value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Run nothing: redraw page and tables of a score that was written by --json
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["cases", "seed", "source", "recordings", "rivals", "minutes", "keep"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["cases", "seed", "source", "recordings", "baselines", "minutes", "out"])]
     pub from: Option<PathBuf>,
     /// Put the score into results/challenge.json of this project, its page beside it, its table into the README, that of
     /// the real recordings into docs/diagnosis.md
     #[arg(long)]
     pub publish: bool,
-}
-
-/// Who plays a case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SimulatorChoice {
-    /// Our own simulation
-    Own,
-    /// MuJoCo
-    Mujoco,
-    /// Drake
-    Drake,
-    /// Exudyn
-    Exudyn,
-}
-
-impl SimulatorChoice {
-    /// Its simulation.
-    #[must_use]
-    pub fn kind(self) -> SimulatorKind {
-        match self {
-            Self::Own => SimulatorKind::Own,
-            Self::Mujoco => SimulatorKind::Mujoco,
-            Self::Drake => SimulatorKind::Drake,
-            Self::Exudyn => SimulatorKind::Exudyn,
-        }
-    }
 }
 
 /// Runs `palpate challenge`.
@@ -85,7 +60,9 @@ impl SimulatorChoice {
 /// A file that cannot be read or written, a seal that does not hold, or a diagnosis that cannot be started.
 pub fn run(args: &ChallengeArgs) -> Result<()> {
     let real = args.recordings.iter().any(|name| name != "none");
-    ensure!(args.cases > 0 || real, UsageError::new("--cases", 0, "at least one, or real recordings"));
+    let folders = args.source.iter().any(|source| matches!(source, CaseSource::Folder(_)));
+    let expected = "at least one, or real recordings, or a folder of cases";
+    ensure!(args.cases > 0 || real || folders, UsageError::new("--cases", 0, expected));
     let open = |path: &Option<PathBuf>| {
         path.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()
     };
@@ -120,6 +97,7 @@ fn read(path: &Path) -> Result<ChallengeScore> {
     let wrong = |found: String| InputError::new(path.display(), found, "a score of palpate.challenge/1");
     let challenge: ChallengeScore = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     ensure!(challenge.schema == "palpate.challenge/1", wrong(challenge.schema));
+    challenge.check().with_context(|| format!("{}: not as it was scored", path.display()))?;
     Ok(challenge)
 }
 

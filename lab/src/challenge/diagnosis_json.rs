@@ -1,15 +1,20 @@
-//! What the diagnosis diagnosis: the part of its JSON that is scored, read as anybody would read it.
+//! The answer of a diagnosis: the part of its JSON that is scored, read as any user would read it.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+
+/// The layout that is read.
+pub const SCHEMA: &str = "palpate.diagnosis/1";
 
 /// A diagnosis, `palpate.diagnosis/1`.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct DiagnosisJson {
+    /// [`SCHEMA`].
+    pub schema: String,
     /// In a word.
     pub verdict: String,
     /// What is named.
     pub physics: Vec<PhysicsJson>,
-    /// What the data do not tell from it.
+    /// Alternatives that these data do not distinguish from the answer.
     #[serde(rename = "rivals")]
     pub alternatives: Vec<AlternativeJson>,
     /// How well the models fit.
@@ -19,8 +24,8 @@ pub struct DiagnosisJson {
     pub findings: Vec<FindingJson>,
 }
 
-/// Something to know.
-#[derive(Debug, Clone, Deserialize)]
+/// A finding about the recordings or the answer.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct FindingJson {
     /// What it is, for programs: "one_speed".
     #[serde(default)]
@@ -28,7 +33,7 @@ pub struct FindingJson {
 }
 
 /// A named effect.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct PhysicsJson {
     /// Its name, or "unknown".
     pub name: String,
@@ -37,7 +42,7 @@ pub struct PhysicsJson {
 }
 
 /// A parameter; what is no number is `None`.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ParameterJson {
     /// Its name.
     pub name: String,
@@ -49,19 +54,19 @@ pub struct ParameterJson {
     pub ci95: [Option<f64>; 2],
 }
 
-/// What the data do not tell from the answer.
-#[derive(Debug, Clone, Deserialize)]
+/// Alternatives that these data do not distinguish from the answer.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct AlternativeJson {
     /// Effects.
     pub physics: Vec<String>,
 }
 
 /// Root mean squares on data that no fit saw.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct FitJson {
     /// "N" or "N m".
     pub unit: String,
-    /// What the sensors leave.
+    /// Expected noise.
     pub noise_floor: Option<f64>,
     /// The nominal physics, values refitted.
     pub refitted: Option<f64>,
@@ -69,8 +74,22 @@ pub struct FitJson {
     pub improved: Option<f64>,
 }
 
+impl DiagnosisJson {
+    /// Names of the answer, in its order.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        self.physics.iter().map(|physics| physics.name.clone()).collect()
+    }
+
+    /// Names of each alternative.
+    #[must_use]
+    pub fn alternative_names(&self) -> Vec<Vec<String>> {
+        self.alternatives.iter().map(|alternative| alternative.physics.clone()).collect()
+    }
+}
+
 impl FitJson {
-    /// `rms` over the floor.
+    /// `rms` over the expected noise.
     #[must_use]
     pub fn over_floor(&self, rms: Option<f64>) -> Option<f64> {
         let floor = self.noise_floor.filter(|floor| *floor > 0.0)?;

@@ -2,59 +2,67 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use anyhow::Result;
 use palpate_cases::python::Python;
-use palpate_cases::{ExternalSimulator, SimulatorKind, Truth, draw, draw_in};
+use palpate_cases::{ExternalSimulator, SimulatorKind, draw, draw_in};
 
 use super::case_list::ListedCase;
+use super::commitment::{CommittedCase, Origin};
+use super::work_folder::WorkFolder;
 
-/// A case whose recordings lie in a folder of their own.
-#[derive(Debug)]
-pub struct GeneratedCase {
-    /// Holds `rig.toml`, `trial-1.csv` and `trial-2.csv`, and nothing else.
-    pub folder: PathBuf,
-    /// What they conceal.
-    pub truth: Truth,
-}
-
-/// The cases of `entries` under `home`, each in a folder of its own, in their order, by as many threads as there are cores;
-/// and those that could not be drawn, with why. `python` has the simulators of others, where there are any to be asked.
+/// The cases of `entries` in `folder`, each in a folder of its own, in the order of `entries`, by as many threads as there are
+/// cores; and those that could not be drawn, with why. What an interrupted run has drawn stays. `python` has the external
+/// simulators, where there are any to be asked.
 ///
 /// # Errors
-/// Nothing can be written to `home`.
+/// The folder cannot be read.
 pub fn generate_all(
     entries: &[ListedCase],
     seed: u64,
-    home: &Path,
+    folder: &WorkFolder,
     python: Option<&Python>,
     done: &(dyn Fn() + Sync),
-) -> Result<(Vec<GeneratedCase>, Vec<String>)> {
+) -> Result<(Vec<CommittedCase>, Vec<String>)> {
+    let there = folder.drawn()?;
     let (next, results) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = || {
         let mut pool = SimulatorPool { python, simulators: HashMap::new() };
-        while let Some(entry) = entries.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let drawn = pool.generate(entry, seed, home);
-            results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((entry, drawn));
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(entry) = entries.get(place) else { break };
+            let kept = there.get(&case_name(entry)).cloned();
+            let drawn = kept.is_none().then(|| pool.generate(entry, seed, folder));
+            let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
+            // Noted under the lock: two lines of a file are not to be mixed.
+            let case = match (kept, drawn) {
+                (Some(case), _) => Ok(case),
+                (None, Some(drawn)) => drawn.and_then(|case| folder.note_drawn(&case).map(|()| case)),
+                (None, None) => continue,
+            };
+            results.push((place, case));
             done();
         }
     };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
-    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let place = |entry: &ListedCase| entries.iter().position(|other| other.index == entry.index);
-    results.sort_by_key(|(entry, _)| place(entry));
+    let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+    results.sort_by_key(|(place, _)| *place);
     let (mut drawn, mut failed) = (Vec::new(), Vec::new());
-    for (entry, result) in results {
+    for (place, result) in results {
+        let entry = &entries[place];
         match result {
             Ok(case) => drawn.push(case),
             Err(error) => failed.push(format!("case {} ({}): {error:#}", entry.index, entry.source.name())),
         }
     }
     Ok((drawn, failed))
+}
+
+fn case_name(entry: &ListedCase) -> String {
+    format!("case-{:04}", entry.index)
 }
 
 /// One thread's simulators with the cases each has played, started when they are first asked for.
@@ -67,7 +75,7 @@ struct SimulatorPool<'a> {
 const CASES_PER_PROCESS: usize = 6;
 
 impl SimulatorPool<'_> {
-    fn generate(&mut self, entry: &ListedCase, seed: u64, home: &Path) -> Result<GeneratedCase> {
+    fn generate(&mut self, entry: &ListedCase, seed: u64, home: &WorkFolder) -> Result<CommittedCase> {
         let case = match (entry.source, self.python) {
             (SimulatorKind::Own, _) => draw(seed, entry.index, &entry.request)?,
             (source, Some(python)) => {
@@ -83,8 +91,8 @@ impl SimulatorPool<'_> {
             }
             (source, None) => anyhow::bail!("{} is not installed", source.name()),
         };
-        let folder = home.join(format!("case-{:04}", entry.index));
-        case.write(&folder)?;
-        Ok(GeneratedCase { folder, truth: case.truth })
+        let name = case_name(entry);
+        case.write(&home.path().join(&name))?;
+        CommittedCase::new(home.path(), &name, Origin::Drawn, &case.truth)
     }
 }

@@ -16,7 +16,7 @@ use palpate_cases::truth::CaseKind;
 use super::binomial::clopper_pearson;
 use super::case_score::CaseScore;
 use super::challenge_score::ChallengeScore;
-use super::targets::{Target, beside, targets};
+use super::targets::{Target, external_lines, statistics, targets};
 use crate::page::shell;
 
 const STYLE: &str = include_str!("../../assets/challenge.css");
@@ -48,8 +48,8 @@ fn opening(challenge: &ChallengeScore) -> Markup {
         p.eyebrow { "palpate challenge, seed " (challenge.seed) ", " (challenge.cases) " recordings with concealed physics" }
         h1 { (headline(challenge)) }
         p.lead {
-            "Each recording was made by a simulator with physics that its rig file does not know, or with none; the answers were sealed; \
-             then each was diagnosed by the command that a user runs, which sees the rig file and two trials and nothing else."
+            "Each recording was made by a simulator with physics that its rig file does not know, or with none; a SHA-256 over the true answers was \
+             published; then each was diagnosed by the command that a user runs, which sees the rig file and two trials and nothing else."
         }
         @for what in &challenge.left_out { p.notices { "Left out: " (what) } }
     }
@@ -61,11 +61,11 @@ fn headline(challenge: &ChallengeScore) -> String {
     let mut parts = Vec::new();
     if challenge.none.n > 0 {
         let quiet = challenge.none.n - challenge.none.false_alarms;
-        parts.push(format!("Nothing missing: {quiet} of {} left alone.", challenge.none.n));
+        parts.push(format!("No effect: no false alarm in {quiet} of {}.", challenge.none.n));
     }
     if !large.is_empty() {
         let of = large.len();
-        parts.push(format!("An effect at least as large as the noise: {right} of {of} named rightly."));
+        parts.push(format!("One effect of strength 1 or more: {right} of {of} named correctly."));
     }
     if parts.is_empty() { "Recordings with concealed physics".to_owned() } else { parts.join(" ") }
 }
@@ -77,12 +77,12 @@ fn select(challenge: &ChallengeScore, is: impl Fn(&CaseScore) -> bool) -> Vec<&C
 fn table(challenge: &ChallengeScore) -> Markup {
     html! {
         section {
-            h2 { "EffectSelection was aimed at, and what came out" }
+            h2 { "Targets and results" }
             div.wide { table.targets {
-                thead { tr { th { "concealed" } th { "hits" } th { "of" } th { "share" } th { "95 % interval" } th { "aim" } th {} } }
-                tbody { @for line in targets(challenge).iter().filter(|line| line.of > 0) { (row_of(line)) } }
+                thead { tr { th { "concealed" } th { "hits" } th { "of" } th { "share" } th { "95 % interval" } th { "target" } th {} } }
+                tbody { @for line in external_lines(challenge).iter().chain(&targets(challenge)).filter(|line| line.of > 0) { (row_of(line)) } }
             } }
-            p.fine { (beside(challenge)) }
+            p.fine { (statistics(challenge)) }
         }
     }
 }
@@ -98,7 +98,7 @@ fn row_of(line: &Target) -> Markup {
     html! {
         tr {
             th { (line.what) } td { (line.hits) } td { (line.of) } td { (percent(share)) }
-            td { (percent(low)) " to " (percent(high)) } td { (line.aim) }
+            td { (percent(low)) " to " (percent(high)) } td { (line.target) }
             td { @if let Some((class, word)) = told { span class=(class) { (word) } } }
         }
     }
@@ -117,10 +117,10 @@ fn sources(challenge: &ChallengeScore) -> Markup {
     };
     html! {
         section {
-            h2 { "Whose simulation" }
-            p { "MuJoCo, Drake and Exudyn were written by others, and nobody here tuned what they give." }
+            h2 { "Results by simulator" }
+            p { "MuJoCo, Drake and Exudyn are independent of this project." }
             div.wide { table {
-                thead { tr { th { "simulator" } th { "cases" } th { "nothing missing: left alone" } th { "one effect, at least the floor: right" } th { "two: right" } th { "outside: owned" } } }
+                thead { tr { th { "simulator" } th { "cases" } th { "no effect: no false alarm" } th { "one effect of strength 1 or more: correct" } th { "two effects: correct" } th { "outside the list: reported as unknown" } } }
                 tbody { @for source in SimulatorKind::ALL {
                     @let rows = of(source);
                     @if !rows.is_empty() { tr {
@@ -148,16 +148,16 @@ fn title(source: SimulatorKind) -> &'static str {
 fn protocol(challenge: &ChallengeScore) -> Markup {
     html! {
         section {
-            h2 { "How it was done" }
+            h2 { "Protocol" }
             ol {
                 li { "Cases were drawn from the seed: what is concealed, its form and its strength, the rig and how wrong its file states it, sensors, trajectories, channels." }
                 li { "Each was written as a rig file and two recordings, in a folder of its own. The answers were committed to by SHA-256 "
                     code { (challenge.sealed_sha256) } " before the first diagnosis; those to real recordings with them." }
                 li { "Each was diagnosed by " code { "palpate diagnose --rig rig.toml trial-1.csv trial-2.csv" } " in its folder." }
-                li { "The seal was opened, held against the commitment, and the answers were scored." }
+                li { "The answers were checked against the commitment, and the diagnoses were scored." }
             }
             p.fine {
-                "Strength is the root mean square that the nominal physics cannot take up, over the floor of the sensor. The same seed, with the same \
+                "Strength is the RMS residual of the refitted nominal model over the RMS error of the force sensor. The same seed, with the same \
                  real recordings, gives the same cases and the same commitment: " code { "palpate challenge --cases " (challenge.cases) " --seed " (challenge.seed) } "."
             }
         }

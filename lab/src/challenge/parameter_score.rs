@@ -2,8 +2,7 @@
 
 use super::case_score::ParameterScore;
 use super::diagnosis_json::PhysicsJson;
-use palpate_cases::Truth;
-use palpate_cases::truth::TrueEffect;
+use super::drawn_answer::{ConcealedEffect, DrawnAnswer};
 
 /// Effect, parameter in the truth, parameter in the answer: the same law and the same unit.
 const SAME_PARAMETERS: [[&str; 3]; 35] = [
@@ -54,7 +53,7 @@ const SAME_NAMES: [[&str; 2]; 4] = [
 
 /// What the answer's parameters are, held against the truth of the one effect concealed.
 #[must_use]
-pub fn compare(truth: &Truth, physics: &[PhysicsJson]) -> Vec<ParameterScore> {
+pub fn compare(truth: &DrawnAnswer, physics: &[PhysicsJson]) -> Vec<ParameterScore> {
     // Several tables of one name are several branches: which is which is nobody's word.
     let ([effect], [found]) = (truth.effects.as_slice(), physics) else { return Vec::new() };
     let same = SAME_PARAMETERS.iter().map(|[name, theirs, ours]| (*name, *theirs, *ours));
@@ -76,14 +75,76 @@ pub fn compare(truth: &Truth, physics: &[PhysicsJson]) -> Vec<ParameterScore> {
 
 /// A damping in another power of depth or speed, two branches seen as one and a weight by angle have other parameters;
 /// the power itself is the same everywhere.
-fn is_same_law(effect: &TrueEffect, parameter: &str) -> bool {
+fn is_same_law(effect: &ConcealedEffect, parameter: &str) -> bool {
     let value = |name: &str| effect.parameters.iter().find(|value| value.name == name).map(|value| value.value);
-    match effect.name {
+    match effect.name.as_str() {
         _ if parameter == "exponent" => true,
         "hunt_crossley_damping" => value("exponent").is_none_or(|exponent| (exponent - 1.0).abs() < 1e-6),
         "quadratic_damping" => value("exponent").is_none_or(|exponent| (exponent - 2.0).abs() < 1e-6),
         "stress_relaxation" => value("second_time_constant").is_none(),
         "gravity_load" => value("angle_zero").is_none(),
         _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn concealed(name: &str, parameters: &[(&str, f64, &str)]) -> DrawnAnswer {
+        let parameter = |(name, value, unit): &(&str, f64, &str)| json!({"name": name, "value": value, "unit": unit});
+        let parameters: Vec<_> = parameters.iter().map(parameter).collect();
+        let effects = json!([{"name": name, "parameters": parameters, "strength_asked": 2.0}]);
+        let answer = json!({
+            "source": "own", "seed": 1, "index": 7, "kind": "single", "strength": 2.0, "grade": "fine", "reference": "rich",
+            "effects": effects, "channels": [],
+        });
+        serde_json::from_value(answer).unwrap()
+    }
+
+    fn found(name: &str, parameter: &str, value: f64, unit: &str, ci95: Value) -> Vec<PhysicsJson> {
+        let parameter = json!({"name": parameter, "value": value, "unit": unit, "ci95": ci95});
+        serde_json::from_value(json!([{"name": name, "parameters": [parameter]}])).unwrap()
+    }
+
+    #[test]
+    fn an_interval_covers_the_truth_or_does_not() {
+        let truth = concealed("adhesion", &[("pull_off", 2.0, "N")]);
+        for (ci95, covered) in [
+            (json!([1.5, 2.5]), true),
+            (json!([2.0, 2.5]), true),
+            (json!([1.5, 2.0]), true),
+            (json!([2.1, 2.5]), false),
+            (json!([1.5, 1.9]), false),
+            (json!([null, 2.5]), true),
+            (json!([null, 1.9]), false),
+            (json!([1.5, null]), true),
+            (json!([2.1, null]), false),
+            (json!([null, null]), true),
+        ] {
+            let scored = compare(&truth, &found("adhesion", "pull_off_force", 2.2, "N", ci95.clone()));
+            let [one] = scored.as_slice() else { panic!("{scored:?}") };
+            assert_eq!((one.covered, one.truth, one.value), (covered, 2.0, 2.2), "{ci95}");
+            assert!((one.error() - 0.1).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn only_the_same_parameter_of_the_same_law_in_the_same_unit_is_compared() {
+        let interval = || json!([1.0, 3.0]);
+        let count = |truth: &DrawnAnswer, name: &str, parameter: &str, unit: &str| {
+            compare(truth, &found(name, parameter, 2.0, unit, interval())).len()
+        };
+        let adhesion = concealed("adhesion", &[("pull_off", 2.0, "N")]);
+        assert_eq!(count(&adhesion, "adhesion", "pull_off_force", "N"), 1);
+        assert_eq!(count(&adhesion, "adhesion", "pull_off_force", "N m"), 0, "another unit");
+        assert_eq!(count(&adhesion, "adhesion", "length", "N"), 0, "another parameter");
+        assert_eq!(count(&concealed("adhesion", &[("pull_off", 0.0, "N")]), "adhesion", "pull_off_force", "N"), 0);
+        let damping =
+            |exponent| concealed("hunt_crossley_damping", &[("alpha", 2.0, "u"), ("exponent", exponent, "1")]);
+        assert_eq!(count(&damping(1.0), "hunt_crossley_damping", "alpha", "u"), 1);
+        assert_eq!(count(&damping(1.3), "hunt_crossley_damping", "alpha", "u"), 0, "another power, another alpha");
+        assert_eq!(count(&damping(1.3), "hunt_crossley_damping", "exponent", "1"), 1);
     }
 }

@@ -1,96 +1,120 @@
-//! The protocol: drawn, sealed, diagnosed, opened, scored.
+//! The protocol: cases drawn, answers committed to, diagnosed, opened, scored.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
+use palpate_cases::SimulatorKind;
 use palpate_cases::python::{self, BASELINES, Packages, Python, SIMULATORS};
-use palpate_cases::{SimulatorKind, Truth};
-use serde::Serialize;
 
-use super::case_score::CaseScore;
+use super::case_result::CaseResult;
+use super::case_source::CaseSource;
 use super::challenge_score::ChallengeScore;
 use super::command::ChallengeArgs;
-use super::commitment::Commitment;
-use super::generate::{self, GeneratedCase};
+use super::commitment::{CommittedCase, OpenedAnswers, Origin, hash};
 use super::recordings::run_diagnosis::diagnose_specimen;
-use super::recordings::specimen::{self, SealedAnswer, Specimen};
-use super::recordings::specimen_score::{RecordingScores, SpecimenScore};
-use super::{baselines, case_list, run_diagnosis};
+use super::recordings::specimen::{self, Specimen};
+use super::run_diagnosis::run_diagnosis;
+use super::work_folder::{Settings, WorkFolder};
+use super::{baselines, case_list, external_cases, generate, score_run};
 use crate::error::UsageError;
 use crate::qemu_bench::project;
 use crate::recordings_folder::{ADVICE, folder};
 
-/// A sealed answer.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Answer<'a> {
-    GeneratedCase(&'a Truth),
-    RecordingScores(SealedAnswer<'a>),
-}
-
-/// All that is put to the diagnosis.
-struct TestSet {
-    cases: Vec<GeneratedCase>,
-    recorded: Vec<Specimen>,
-}
-
-impl TestSet {
-    fn answers(&self) -> impl Iterator<Item = Answer<'_>> {
-        let drawn = self.cases.iter().map(|case| Answer::GeneratedCase(&case.truth));
-        drawn.chain(self.recorded.iter().map(|entry| Answer::RecordingScores(entry.sealed())))
-    }
-}
-
-/// Holds the challenge that `args` asks for.
+/// Runs the challenge that `args` asks for, or what an interrupted one has left of it.
 ///
 /// # Errors
-/// A folder that cannot be written, a commitment that does not hold, or a diagnosis that cannot be started.
+/// A folder that cannot be written, answers or files that are not those that were committed to, or a diagnosis that cannot be
+/// started.
 pub fn run(args: &ChallengeArgs) -> Result<ChallengeScore> {
+    let tool = std::env::current_exe().context("this program cannot find itself")?;
+    let home = WorkFolder::open(args.out.as_deref(), &settings(args, &tool)?)?;
     let mut left_out = Vec::new();
-    let temporary;
-    let home = match &args.keep {
-        Some(folder) => folder.as_path(),
+    let specimens = selected_specimens(&args.recordings, &mut left_out)?;
+    let commitment = match home.committed()? {
+        Some((commitment, noted)) => {
+            left_out = noted;
+            commitment
+        }
         None => {
-            temporary = tempfile::tempdir().context("no folder for the recordings can be made")?;
-            temporary.path()
+            let answers = prepare(args, &home, &specimens, &mut left_out)?;
+            ensure!(!answers.is_empty(), "there is nothing to diagnose: {}", left_out.join("; "));
+            home.commit(&answers, &left_out)?
         }
     };
-    std::fs::create_dir_all(home).with_context(|| format!("cannot make {}", home.display()))?;
-    let recorded = recordings(&args.recordings, &mut left_out)?;
-    let test_set = TestSet { cases: drawn(args, home, &mut left_out)?, recorded };
-    let (cases, real) = (test_set.cases.len(), test_set.recorded.len());
-    ensure!(cases + real > 0, "there is nothing to diagnose: {}", left_out.join("; "));
-    let commitment = Commitment::commit(&home.join("answers.jsonl"), test_set.answers())?;
-    eprintln!("{cases} cases drawn, {real} specimens; the answers are sealed by SHA-256 {}", commitment.sha256());
-    let others = args.rivals.then(|| scripts(&BASELINES, "PySINDy and SysIdentPy", &mut left_out)).flatten();
-    let tool = std::env::current_exe().context("this program cannot find itself")?;
-    let rows = diagnosed(args, &tool, &test_set.cases, others.as_ref())?;
-    if rows.len() < cases {
-        left_out.push(format!("{} of {cases} cases: not reached in the minutes that were given", cases - rows.len()));
-    }
-    let real = specimens(args, &tool, &test_set.recorded, home)?;
-    commitment.verify(test_set.answers())?;
-    let recorded = (!real.is_empty()).then(|| RecordingScores::of(real));
-    Ok(ChallengeScore { recorded, ..ChallengeScore::of(args.seed, commitment.sha256(), rows, left_out) })
+    // Read for the names and the files of the cases: the answers are not looked at before all is diagnosed.
+    let cases = commitment.open()?.cases().to_vec();
+    let real = cases.iter().filter(|case| case.origin == Origin::Recorded).count();
+    let sha256 = commitment.sha256();
+    eprintln!("{} cases, {real} real recordings; the answers are committed to by SHA-256 {sha256}", cases.len() - real);
+    let python = args.baselines.then(|| scripts(&BASELINES, "PySINDy and SysIdentPy", &mut left_out)).flatten();
+    diagnose_all(args, &tool, &home, &cases, &specimens, python.as_ref())?;
+    let answers: OpenedAnswers = commitment.open()?;
+    score_run::score(args.seed, &answers, &home.results()?, &specimens, left_out)
 }
 
-/// The cases that `args` asks for, drawn below `home`.
-fn drawn(args: &ChallengeArgs, home: &Path, left_out: &mut Vec<String>) -> Result<Vec<GeneratedCase>> {
-    if args.cases == 0 {
+/// What decides this run.
+fn settings(args: &ChallengeArgs, tool: &Path) -> Result<Settings> {
+    let program = std::fs::read(tool).with_context(|| format!("cannot read {}", tool.display()))?;
+    Ok(Settings {
+        seed: args.seed,
+        cases: args.cases,
+        sources: args.source.iter().map(ToString::to_string).collect(),
+        recordings: args.recordings.clone(),
+        baselines: args.baselines,
+        program_sha256: hash(&program),
+    })
+}
+
+/// Writes the files of every case: those of other authors, then the drawn ones, then the real recordings.
+fn prepare(
+    args: &ChallengeArgs,
+    home: &WorkFolder,
+    specimens: &[Specimen],
+    left_out: &mut Vec<String>,
+) -> Result<Vec<CommittedCase>> {
+    let mut answers = external(args, home)?;
+    answers.extend(drawn(args, home, left_out)?);
+    for (number, specimen) in specimens.iter().enumerate() {
+        // The name of a folder is no hint.
+        let case = format!("recorded-{number:02}");
+        specimen.write(&home.path().join(&case))?;
+        answers.push(CommittedCase::new(home.path(), &case, Origin::Recorded, &specimen.sealed())?);
+    }
+    Ok(answers)
+}
+
+/// The cases of other authors that `args` names, copied to `home`.
+fn external(args: &ChallengeArgs, home: &WorkFolder) -> Result<Vec<CommittedCase>> {
+    let folders = args.source.iter().filter_map(|source| match source {
+        CaseSource::Folder(folder) => Some(folder),
+        CaseSource::Simulator(_) => None,
+    });
+    let mut answers = Vec::new();
+    for folder in folders {
+        for found in external_cases::read(folder)? {
+            let case = format!("external-{:04}", answers.len());
+            found.copy_to(&home.path().join(&case))?;
+            answers.push(CommittedCase::new(home.path(), &case, Origin::External, &found.answer)?);
+        }
+    }
+    Ok(answers)
+}
+
+/// The cases that `args` has drawn, written below `home`.
+fn drawn(args: &ChallengeArgs, home: &WorkFolder, left_out: &mut Vec<String>) -> Result<Vec<CommittedCase>> {
+    let asked = CaseSource::simulators(&args.source);
+    if args.cases == 0 || asked.is_empty() {
         return Ok(Vec::new());
     }
-    let asked: Vec<SimulatorKind> = match args.source.as_slice() {
-        [] => SimulatorKind::ALL.to_vec(),
-        some => some.iter().map(|player| player.kind()).collect(),
-    };
-    let elsewhere = asked.iter().any(|source| *source != SimulatorKind::Own);
-    let python = elsewhere.then(|| scripts(&SIMULATORS, "the cases of MuJoCo, Drake and Exudyn", left_out)).flatten();
+    let needs_python = asked.iter().any(|source| *source != SimulatorKind::Own);
+    let wanted = needs_python.then(|| scripts(&SIMULATORS, "the cases of MuJoCo, Drake and Exudyn", left_out));
+    let python = wanted.flatten();
     let can = |source: &SimulatorKind| *source == SimulatorKind::Own || python.is_some();
     let sources: Vec<SimulatorKind> = asked.into_iter().filter(can).collect();
     let entries = case_list::sample(args.cases, &sources, args.seed);
-    ensure!(!entries.is_empty(), "there is nobody to play a case: {}", left_out.join("; "));
+    ensure!(!entries.is_empty(), "no simulator is there to draw a case: {}", left_out.join("; "));
     let bar = progress(entries.len(), "drawing");
     let (cases, failed) = generate::generate_all(&entries, args.seed, home, python.as_ref(), &|| bar.inc(1))?;
     bar.finish_and_clear();
@@ -99,7 +123,7 @@ fn drawn(args: &ChallengeArgs, home: &Path, left_out: &mut Vec<String>) -> Resul
 }
 
 /// The real recordings that `wanted` names.
-fn recordings(wanted: &[String], left_out: &mut Vec<String>) -> Result<Vec<Specimen>> {
+fn selected_specimens(wanted: &[String], left_out: &mut Vec<String>) -> Result<Vec<Specimen>> {
     let wanted = match wanted {
         [only] if only == "none" => return Ok(Vec::new()),
         [only] if only == "all" => &[],
@@ -120,58 +144,55 @@ fn recordings(wanted: &[String], left_out: &mut Vec<String>) -> Result<Vec<Speci
     Ok(entries)
 }
 
-/// Every case that is reached in the time given, diagnosed and scored. They come in no order: those reached are an even sample.
-fn diagnosed(
+/// Diagnoses every case that has no result yet and is reached in the time given; real recordings always. Drawn cases come in
+/// no order: those reached are an even sample.
+fn diagnose_all(
     args: &ChallengeArgs,
     tool: &Path,
-    cases: &[GeneratedCase],
-    others: Option<&Python>,
-) -> Result<Vec<CaseScore>> {
+    home: &WorkFolder,
+    cases: &[CommittedCase],
+    specimens: &[Specimen],
+    python: Option<&Python>,
+) -> Result<()> {
+    let (there, begun) = (home.results()?, Instant::now());
     let bar = progress(cases.len(), "diagnosing");
-    let mut rows: Vec<CaseScore> = Vec::new();
-    let begun = Instant::now();
     let over = || args.minutes.is_some_and(|minutes| begun.elapsed() >= Duration::from_secs(60 * minutes));
+    let mut numbered = specimens.iter();
     for case in cases {
-        if over() {
-            break;
-        }
-        let mut row = run_diagnosis::diagnose_and_score(tool, case)?;
-        if args.rivals {
-            row.baselines = baselines::run_all(&case.folder, others);
-        }
-        bar.suspend(|| eprintln!("{}", row.line()));
+        let specimen = if case.origin == Origin::Recorded { numbered.next() } else { None };
         bar.inc(1);
-        rows.push(row);
-        clear(args, &case.folder)?;
+        if there.contains_key(&case.case) || (specimen.is_none() && over()) {
+            continue;
+        }
+        case.check_files(home.path())?;
+        let result = match specimen {
+            Some(specimen) => diagnose_specimen(tool, specimen, home.path(), &case.case)?,
+            None => diagnose_case(tool, home.path(), case, args.baselines, python)?,
+        };
+        home.note_result(&result)?;
+        bar.suspend(|| eprintln!("{}", result.line()));
+        home.clear(&case.case)?;
     }
     bar.finish_and_clear();
-    Ok(rows)
+    Ok(())
 }
 
-/// Every specimen diagnosed and scored.
-fn specimens(args: &ChallengeArgs, tool: &Path, entries: &[Specimen], home: &Path) -> Result<Vec<SpecimenScore>> {
-    let bar = progress(entries.len(), "real recordings");
-    let mut rows = Vec::new();
-    for (number, entry) in entries.iter().enumerate() {
-        // The name of a folder is no hint.
-        let folder = home.join(format!("recorded-{number:02}"));
-        entry.write(&folder)?;
-        let row = diagnose_specimen(tool, entry, &folder)?;
-        bar.suspend(|| eprintln!("{}", row.line()));
-        bar.inc(1);
-        rows.push(row);
-        clear(args, &folder)?;
+/// Runs the diagnosis, and the baselines where they are asked for, on one case.
+fn diagnose_case(
+    tool: &Path,
+    home: &Path,
+    case: &CommittedCase,
+    with_baselines: bool,
+    python: Option<&Python>,
+) -> Result<CaseResult> {
+    let folder: PathBuf = home.join(&case.case);
+    let trials = case.files.keys().filter(|name| name.ends_with(".csv")).map(String::as_str).collect::<Vec<_>>();
+    let (diagnosis, seconds) = run_diagnosis(tool, &folder, &trials)?;
+    let mut result = CaseResult::new(&case.case, diagnosis, seconds);
+    if with_baselines && case.origin == Origin::Drawn {
+        result.baselines = baselines::run_all(&folder, python);
     }
-    bar.finish_and_clear();
-    Ok(rows)
-}
-
-/// A folder that nobody asked to keep goes at once: a thousand of them fill a disk.
-fn clear(args: &ChallengeArgs, folder: &Path) -> Result<()> {
-    if args.keep.is_some() {
-        return Ok(());
-    }
-    std::fs::remove_dir_all(folder).with_context(|| format!("cannot clear {}", folder.display()))
+    Ok(result)
 }
 
 /// The scripts of `packages` with a Python that has what they need, if that can be had.

@@ -3,7 +3,7 @@
 use super::binomial::clopper_pearson;
 use super::challenge_score::ChallengeScore;
 use super::recordings::table::line;
-use super::targets::{Target, beside, targets};
+use super::targets::{Target, external_lines, statistics, targets};
 
 /// What begins the part of a README or page of the documentation that the command writes.
 pub const BEGIN: &str = "<!-- written by `palpate challenge --publish`; not by hand -->";
@@ -14,10 +14,10 @@ pub const END: &str = "<!-- end of what `palpate challenge` writes -->";
 #[must_use]
 pub fn table(challenge: &ChallengeScore) -> String {
     let mut text = format!(
-        "Seed {}, {} cases, answers sealed by SHA-256 `{}` before the first diagnosis.\n\n",
+        "Seed {}, {} cases, answers committed to by SHA-256 `{}` before the first diagnosis.\n\n",
         challenge.seed, challenge.cases, challenge.sealed_sha256
     );
-    if challenge.cases > 0 {
+    if challenge.cases > 0 || !challenge.sources.is_empty() {
         text += &drawn(challenge);
     }
     if let Some(recorded) = &challenge.recorded {
@@ -27,13 +27,18 @@ pub fn table(challenge: &ChallengeScore) -> String {
     text
 }
 
-/// The cases that were drawn: a line each, and the figures that are no shares.
+/// The cases of other authors, then the drawn ones: a line each, and the statistics that are no shares.
 fn drawn(challenge: &ChallengeScore) -> String {
-    let mut text = "| concealed | | of | share (95 % interval) | aim |\n|---|---|---|---|---|\n".to_owned();
-    for Target { what, hits, of, aim, .. } in targets(challenge) {
-        text += &format!("| {what} | {hits} | {of} | {} | {aim} |\n", percent(hits, of));
+    let mut text = "| concealed | | of | share (95 % interval) | target |\n|---|---|---|---|---|\n".to_owned();
+    let own = if challenge.cases > 0 { targets(challenge) } else { Vec::new() };
+    let lines = external_lines(challenge).into_iter().chain(own);
+    for Target { what, hits, of, target, .. } in lines {
+        text += &format!("| {what} | {hits} | {of} | {} | {target} |\n", percent(hits, of));
     }
-    text + &format!("\n{}\n", beside(challenge))
+    if challenge.cases > 0 {
+        text += &format!("\n{}\n", statistics(challenge));
+    }
+    text
 }
 
 /// "92 % (81 to 97 %)"; nothing where there is no case.

@@ -21,8 +21,8 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
     columns.sort_by_key(|name| (["more than one", "unknown", "nothing"].contains(name), *name));
     html! {
         section {
-            h2 { "EffectSelection was concealed, and what was named" }
-            p { "A row is what was concealed, a column what was said; on the diagonal it is right. All strengths, down to a tenth of the floor." }
+            h2 { "Concealed effect against named effect" }
+            p { "Rows: concealed effect. Columns: named effect. Correct answers are on the diagonal. All strengths, down to 0.1." }
             div.wide { table.confusion {
                 thead { tr { th { "concealed" } @for column in &columns { th { span { (column.replace('_', " ")) } } } } }
                 tbody { @for ((_, truth), said) in &counts { (line(truth, said, &columns)) } }

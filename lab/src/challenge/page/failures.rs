@@ -13,8 +13,8 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
     failures.sort_by(|a, b| b.strength.total_cmp(&a.strength));
     html! {
         section {
-            h2 { "EffectSelection failed" }
-            p { (failures.len()) " of " (challenge.cases) " were not answered rightly, the strongest first." }
+            h2 { "Cases that were not answered correctly" }
+            p { (failures.len()) " of " (challenge.cases) " were not answered correctly, the strongest first." }
             div.wide { table {
                 thead { tr { th { "case" } th.text { "concealed" } th { "strength" } th.text { "said" } th.text { "how" } th.text { "what made it hard" } } }
                 tbody { @for row in failures { (line(row)) } }

@@ -34,7 +34,7 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
     let Some((row, picture)) = smallest(challenge).and_then(|row| Some((row, picture(row)?))) else { return html! {} };
     html! {
         section {
-            h2 { "Concealed means that no eye sees it" }
+            h2 { "The smallest effect that was named correctly" }
             p {
                 "Case " (row.index) ": " (row.truth.join(" and ").replace('_', " ")) " of " (format!("{:.2}", row.strength))
                 " of the floor. Recorded force and the simulation without it, values refitted, lie over one another; row by row the difference \

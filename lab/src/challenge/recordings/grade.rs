@@ -114,8 +114,10 @@ mod tests {
             rivals.iter().map(|names| json!({"physics": names.split('+').collect::<Vec<_>>()})).collect();
         let fit = json!({"unit": "N", "noise_floor": 1.0, "refitted": 2.0, "improved": 1.0});
         let findings = json!([{"code": finding}]);
-        let all =
-            json!({"verdict": "explained", "physics": physics, "rivals": rivals, "fit": fit, "findings": findings});
+        let schema = crate::challenge::diagnosis_json::SCHEMA;
+        let all = json!({
+            "schema": schema, "verdict": "explained", "physics": physics, "rivals": rivals, "fit": fit, "findings": findings,
+        });
         serde_json::from_value(all).unwrap()
     }
 

@@ -1,4 +1,4 @@
-//! One specimen: diagnosed by the command that a user runs, then scored on the trials that were kept from it.
+//! One specimen: diagnosed by the command that a user runs; its improved rig file on the trials that were kept back.
 
 use std::path::Path;
 
@@ -6,34 +6,34 @@ use anyhow::Result;
 
 use super::held_out;
 use super::specimen::Specimen;
-use super::specimen_score::{ResidualPair, SpecimenScore};
+use super::specimen_score::ResidualPair;
+use crate::challenge::case_result::CaseResult;
 use crate::challenge::run_diagnosis::run_diagnosis;
 use crate::rig::Rig;
 
 /// Where the command leaves the improved rig file.
-const MODEL: &str = "improved.toml";
+const MODEL_FILE: &str = "improved.toml";
 
-/// Runs `tool diagnose` on `entry`, which lies in `folder`, and scores what it tells.
+/// Runs `tool diagnose` on `specimen`, which lies in `home/case`.
 ///
 /// # Errors
 /// The command cannot be started.
-pub fn diagnose_specimen(tool: &Path, entry: &Specimen, folder: &Path) -> Result<SpecimenScore> {
-    let files = entry.files();
-    let arguments: Vec<&str> = files.iter().map(String::as_str).chain(["--model", MODEL]).collect();
-    let (diagnosis, seconds) = run_diagnosis(tool, folder, &arguments)?;
-    let mut row = SpecimenScore::score(entry, diagnosis, seconds);
-    if row.failure.is_none() && !entry.held_out.is_empty() {
-        match held_out_rms(entry, &folder.join(MODEL)) {
-            Ok([before, after]) => row.held_out = Some(ResidualPair { before: Some(before), after: Some(after) }),
-            Err(error) => row.failure = Some(format!("the trials kept back: {error:#}")),
-        }
+pub fn diagnose_specimen(tool: &Path, specimen: &Specimen, home: &Path, case: &str) -> Result<CaseResult> {
+    let (files, folder) = (specimen.files(), home.join(case));
+    let arguments: Vec<&str> = files.iter().map(String::as_str).chain(["--model", MODEL_FILE]).collect();
+    let (diagnosis, seconds) = run_diagnosis(tool, &folder, &arguments)?;
+    let mut result = CaseResult::new(case, diagnosis, seconds);
+    if result.failure.is_none() && !specimen.held_out.is_empty() {
+        let pair = |[before, after]: [f64; 2]| ResidualPair { before: Some(before), after: Some(after) };
+        let rms = held_out_rms(specimen, &folder.join(MODEL_FILE));
+        result.held_out = Some(rms.map(pair).map_err(|error| format!("the trials kept back: {error:#}")));
     }
-    Ok(row)
+    Ok(result)
 }
 
-/// What the refitted nominal law and the improved rig file leave of the trials kept back.
-fn held_out_rms(entry: &Specimen, improved: &Path) -> Result<[f64; 2]> {
+/// RMS residuals of the refitted nominal law and of the improved rig file on the trials kept back.
+fn held_out_rms(specimen: &Specimen, improved: &Path) -> Result<[f64; 2]> {
     let origin = improved.display().to_string();
-    let nominal = held_out::refitted(&entry.rig, &entry.rig_file.display().to_string(), &entry.training)?;
-    held_out::left([&nominal, &Rig::read(improved)?], &origin, &entry.held_out)
+    let nominal = held_out::refitted(&specimen.rig, &specimen.rig_file.display().to_string(), &specimen.training)?;
+    held_out::left([&nominal, &Rig::read(improved)?], &origin, &specimen.held_out)
 }

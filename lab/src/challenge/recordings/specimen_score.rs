@@ -102,7 +102,7 @@ pub struct ResidualPair {
 impl SpecimenScore {
     /// Holds what was `told` of `entry`, or why nothing was, against what is known of it.
     #[must_use]
-    pub fn score(entry: &Specimen, diagnosis: Result<DiagnosisJson, String>, seconds: f64) -> Self {
+    pub fn score(entry: &Specimen, diagnosis: Result<&DiagnosisJson, &str>, seconds: f64) -> Self {
         let own = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let set = entry.set;
         let mut row = Self {
@@ -128,17 +128,17 @@ impl SpecimenScore {
             failure: None,
         };
         match diagnosis {
-            Err(failure) => row.failure = Some(failure),
+            Err(failure) => row.failure = Some(failure.to_owned()),
             Ok(diagnosis) => {
-                row.named = own(&grade::named(&diagnosis));
-                row.alternatives = own(&grade::alternatives(&diagnosis));
+                row.named = own(&grade::named(diagnosis));
+                row.alternatives = own(&grade::alternatives(diagnosis));
                 row.missing.retain(|name| !row.named.contains(name));
-                row.wrong = own(&grade::wrong(set, &diagnosis));
-                row.grade = grade::grade(set, &diagnosis);
-                row.leaves_friction_open = set.friction_is_open && grade::leaves_friction_open(&diagnosis);
+                row.wrong = own(&grade::wrong(set, diagnosis));
+                row.grade = grade::grade(set, diagnosis);
+                row.leaves_friction_open = set.friction_is_open && grade::leaves_friction_open(diagnosis);
                 row.noise_rms = diagnosis.fit.noise_floor;
                 row.cross_validated = ResidualPair { before: diagnosis.fit.refitted, after: diagnosis.fit.improved };
-                row.verdict = Some(diagnosis.verdict);
+                row.verdict = Some(diagnosis.verdict.clone());
             }
         }
         row
