@@ -115,3 +115,63 @@ fn unwritable(path: &Path, error: &io::Error) -> InputError {
         "a file in a folder that exists and may be written",
     )
 }
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+
+    fn write(path: &Path, text: &str) -> Result<(), InputError> {
+        let mut file = OutFile::create(path)?;
+        file.write_all(text.as_bytes()).map_err(|error| file.fault(&error))?;
+        file.commit()
+    }
+
+    #[test]
+    fn a_file_is_there_in_whole_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        write(&path, "old").unwrap();
+        let mut file = OutFile::create(&path).unwrap();
+        file.write_all(b"half").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        drop(file);
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "a temporary file is left");
+        write(&path, "new").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    }
+
+    #[test]
+    fn a_symbolic_link_stays_one_and_what_it_points_at_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let (target, link) = (folder.path().join("target.csv"), folder.path().join("link.csv"));
+        fs::write(&target, "old").unwrap();
+        symlink(&target, &link).unwrap();
+        write(&link, "new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&target).unwrap(), "new");
+    }
+
+    #[test]
+    fn a_file_that_may_not_be_written_is_refused_and_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        fs::write(&path, "old").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+        // Root may write what is marked as read-only: then there is nothing to refuse.
+        if File::options().append(true).open(&path).is_ok() {
+            eprintln!("left out: this user may write any file");
+            return;
+        }
+        assert!(write(&path, "new").is_err());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+    }
+
+    #[test]
+    fn a_folder_is_no_file_to_write_to() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(write(folder.path(), "new").unwrap_err().to_string().contains("a folder"));
+    }
+}

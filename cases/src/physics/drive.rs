@@ -168,11 +168,53 @@ fn touching(velocity: f64, load: f64, mass: f64, reaction: Reaction, brake: (f64
 mod tests {
     use super::*;
 
+    /// Friction of 1 N against motion forward and 0.5 N backward.
+    const FRICTION_N: (f64, f64) = (1.0, 0.5);
+
     #[test]
     fn a_load_below_the_friction_moves_nothing() {
         assert_eq!(braked(0.0, 0.99, 0.4, (1.0, 0.5), 1e-4), 0.0);
         assert_eq!(braked(0.0, -0.49, 0.4, (1.0, 0.5), 1e-4), 0.0);
         assert!(braked(0.0, 1.01, 0.4, (1.0, 0.5), 1e-4) > 0.0);
         assert!(braked(0.0, -0.51, 0.4, (1.0, 0.5), 1e-4) < 0.0);
+    }
+
+    #[test]
+    fn friction_takes_its_impulse_from_the_motion_and_never_turns_it() {
+        let (mass, dt) = (0.4, 1e-4);
+        let next = |velocity: f64, load: f64| braked(velocity, load, mass, FRICTION_N, dt);
+        // m dv = (load - friction) dt, with the friction of the direction of motion.
+        assert!((next(0.1, 0.3) - (0.1 + (0.3 - 1.0) * dt / mass)).abs() < 1e-15);
+        assert!((next(-0.1, 0.3) - (-0.1 + (0.3 + 0.5) * dt / mass)).abs() < 1e-15);
+        // What is slower than the friction of one step stops in it, exactly, and is not pushed back.
+        for velocity in [1e-4, 2.4e-4, -1e-4, -1.2e-4] {
+            assert_eq!(next(velocity, 0.0), 0.0, "{velocity}");
+        }
+    }
+
+    #[test]
+    fn friction_takes_the_kinetic_energy_of_a_coasting_body_and_no_more() {
+        let (mass, dt, level) = (0.4, 1e-4, 0.7);
+        let (mut velocity, mut position) = (0.3, 0.0);
+        let before = 0.5 * mass * velocity * velocity;
+        while velocity != 0.0 {
+            let next = braked(velocity, 0.0, mass, (level, level), dt);
+            position += 0.5 * dt * (velocity + next);
+            velocity = next;
+            assert!(velocity >= 0.0);
+        }
+        assert!((level * position / before - 1.0).abs() < 1e-3, "{} J of {before} J", level * position);
+    }
+
+    #[test]
+    fn a_surface_does_not_pull_beyond_what_holds_it() {
+        let reaction = Reaction { force: -2.0, mass: 0.0, least: -0.5 };
+        // The surface asks for a pull of 2 N and may have 0.5 N.
+        let next = touching(0.0, 0.0, 0.4, reaction, (0.0, 0.0), 1e-4);
+        assert!((next - 0.5e-4 / 0.4).abs() < 1e-15, "{next}");
+        let pushing = Reaction { force: 2.0, mass: 0.6, least: 0.0 };
+        // A surface with a mass of its own: (m + mass) dv = -force dt.
+        let next = touching(1.0, 0.0, 0.4, pushing, (0.0, 0.0), 1e-4);
+        assert!((next - (1.0 - 2e-4)).abs() < 1e-15, "{next}");
     }
 }

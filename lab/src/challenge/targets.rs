@@ -101,8 +101,9 @@ pub fn targets(challenge: &ChallengeScore) -> Vec<Target> {
 #[must_use]
 pub fn statistics(challenge: &ChallengeScore) -> String {
     format!(
-        "Names offered where something was detected: {:.2} in the mean (aim 1.5). Parameters: median error {:.1} % (aim 5 %). Residual over \
-         the floor where rightly named, median: {:.2} before, {:.2} after (aim 1.2). A diagnosis took {:.1} s (median).",
+        "Names in answer and alternatives where something was detected: {:.2} in the mean (target 1.5). Parameters: median error {:.1} % \
+         (target 5 %). Held-out residual over the expected noise where named correctly, median: {:.2} before, {:.2} after (target 1.2). \
+         A diagnosis took {:.1} s (median).",
         challenge.single.mean_set_size,
         100.0 * challenge.parameters.median_error,
         challenge.residual_over_floor.before_median,

@@ -146,3 +146,27 @@ fn line_at(bytes: &[u8], at: usize) -> usize {
 fn text(field: &[u8]) -> &str {
     std::str::from_utf8(field).unwrap_or_default().trim()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Recording, InputError> {
+        let rig = Rig::parse(
+            "[rig]\nname = \"bench\"\n[contact]\nsurface_m = 0.0\nstiffness_n_m = 300.0\ndamping_n_s_m = 5.0\n",
+            "rig.toml",
+        );
+        let file = File { place: "trial.csv".to_owned(), bytes: text.as_bytes() };
+        file.parse("trial.csv".to_owned(), &rig.unwrap())
+    }
+
+    #[test]
+    fn a_row_longer_or_shorter_than_the_header_is_refused_by_its_line() {
+        let header = "t_s,position_m,force_N\n0.000,0.001,1.0\n";
+        assert_eq!(parse(&format!("{header}0.001,0.002,2.0\n")).unwrap().force.unwrap(), [1.0, 2.0]);
+        for row in ["0.001,0.002,2.0,7.0", "0.001,0.002,2.0,", "0.001,0.002"] {
+            let error = parse(&format!("{header}{row}\n")).unwrap_err().to_string();
+            assert!(error.contains("trial.csv:3"), "{row}: {error}");
+        }
+    }
+}
