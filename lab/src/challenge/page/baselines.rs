@@ -13,13 +13,13 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
     }
     html! {
         section {
-            h2 { "The same files, put to others" }
+            h2 { "Baselines on the same files" }
             p {
-                "Plain BIC chooses among the very laws of the diagnosis, by the criterion of the textbooks. PySINDy and SysIdentPy regress on \
-                 libraries of terms; what their terms stand for is written in their scripts. All fit one trial and foretell the other."
+                "Plain BIC chooses among the very laws of the diagnosis, by the Bayesian information criterion. PySINDy and SysIdentPy regress on \
+                 libraries of terms; what their terms stand for is written in their scripts. All are fitted to one trial and evaluated on the other."
             }
             div.wide { table.others {
-                thead { tr { th { "who" } th { "alarms where nothing is missing" } th { "effects at least the floor: named, and nothing else" } th { "RMS left of them on unseen data, of the refitted law's" } th { "seconds" } th { "no answer" } } }
+                thead { tr { th { "method" } th { "false alarms where nothing is missing" } th { "one effect of strength 1 or more: named, and nothing else" } th { "held-out RMS residual, relative to the refitted nominal law" } th { "seconds" } th { "no answer" } } }
                 tbody { @for standing in &summaries { (line(standing)) } }
             } }
         }

@@ -43,9 +43,9 @@ fn how(row: &CaseScore) -> &'static str {
         () if row.failure.is_some() => "no answer",
         () if row.is_false_alarm() => "false alarm",
         () if !row.is_detected() => "missed",
-        () if row.is_within() => "truth among the names offered",
-        () if row.is_owned() && row.named.len() == 1 => "found, not named",
-        () if row.kind == CaseKind::Outside && row.is_owned() => "owned, with a name beside",
+        () if row.is_within() => "truth among answer and alternatives",
+        () if row.is_owned() && row.named.len() == 1 => "reported as unknown",
+        () if row.kind == CaseKind::Outside && row.is_owned() => "unknown, with a wrong name beside",
         () if row.truth.iter().any(|truth| row.named.contains(truth)) => "found in part",
         () => "another name",
     }
@@ -54,10 +54,10 @@ fn how(row: &CaseScore) -> &'static str {
 /// What the case itself has that hides effects.
 fn hard(row: &CaseScore) -> String {
     let reasons = [
-        (row.strength < 0.3 && row.kind != CaseKind::None, "below a third of the floor"),
-        ((0.3..1.0).contains(&row.strength), "below the floor"),
+        (row.strength < 0.3 && row.kind != CaseKind::None, "strength below 0.3"),
+        ((0.3..1.0).contains(&row.strength), "strength below 1"),
         (row.grade == SensorGrade::Coarse, "coarse sensors"),
-        (row.excitation == Excitation::Poor, "a poor trajectory"),
+        (row.excitation == Excitation::Poor, "poor excitation"),
         (!row.effort, "no effort recorded"),
     ];
     let there: Vec<&str> = reasons.into_iter().filter(|(is, _)| *is).map(|(_, reason)| reason).collect();

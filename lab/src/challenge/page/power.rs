@@ -18,12 +18,12 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
     }
     html! {
         section {
-            h2 { "How small may it be" }
+            h2 { "Detection and naming by strength" }
             p {
-                "One effect of the list, by its strength: one is as large as the floor of the sensor. A point is a share of the cases of its \
-                 band, a bar what chance allows it to be (95 %)."
+                "One effect of the list, by strength (RMS residual of the refitted nominal model over the RMS error of the force sensor). Points: shares; \
+                 bars: 95 % confidence intervals."
             }
-            p.legend { span.detected { "● something is said to be missing" } "  " span.right { "● named rightly, and nothing else" } }
+            p.legend { span.detected { "● detected" } "  " span.right { "● named correctly, and nothing else" } }
             svg.power role="img" aria-label=(label(bands)) height="268" {
                 @for tick in [0.0, 0.25, 0.5, 0.75, 1.0] {
                     line.grid x1=(across(LEFT)) x2=(across(RIGHT)) y1=(y(tick)) y2=(y(tick)) {}

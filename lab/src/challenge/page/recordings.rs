@@ -14,10 +14,10 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
             h2 { "Real recordings" }
             p { (line(recorded)) }
             p {
-                "Measured on hardware by others and held against a linear rig file. EffectSelection they know of their rigs was sealed with the other \
-                 answers. Where a specimen has several trials or strokes, half of them went to the diagnosis, and the improved rig file that it \
-                 wrote was held against the others: every value frozen, but for where the surface lies in that trial, which is placed over its \
-                 beginning; that beginning is not scored."
+                "Measured on hardware by others, with a linear rig file. What their makers report was committed to with the other answers. Where a \
+                 specimen has several trials or strokes, half of them were diagnosed, and the improved rig file was evaluated on the others \
+                 with nothing refitted, except the position of the surface in that trial: it is estimated from the beginning of the trial, \
+                 which is not scored."
             }
             (table(recorded))
             p.fine {
