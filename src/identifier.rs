@@ -60,3 +60,20 @@ impl<L: UpdateLaw, const N: usize> Identifier<L, N> {
         self.tracker.state()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BlockConfig, BlockLeastSquares};
+
+    fn law(window: u16) -> BlockLeastSquares {
+        BlockLeastSquares::new(BlockConfig::of(window)).expect("sound settings")
+    }
+
+    #[test]
+    fn a_window_longer_than_the_ring_is_refused() {
+        assert!(Identifier::<_, 24>::new(StreamConfig::BENCH, law(24)).is_ok());
+        let refused = Identifier::<_, 24>::new(StreamConfig::BENCH, law(25)).expect_err("one sample too many");
+        assert_eq!(refused.parameter, "window");
+    }
+}

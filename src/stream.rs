@@ -204,6 +204,12 @@ impl<L: UpdateLaw> EstimatorState<L> {
         self.last = Estimate::UNKNOWN;
     }
 
+    /// Replaces the law and resets its state.
+    pub(crate) fn configure(&mut self, law: L) {
+        self.law = law;
+        self.restart();
+    }
+
     /// The state of the law.
     pub fn state(&self) -> &L::State {
         &self.state

@@ -18,7 +18,7 @@ pub struct Estimator {
 }
 
 /// Validated settings with the derived constants: prepared in the idle loop, applied by the interrupt.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct ValidatedSettings {
     bank_config: ValidatedBankConfig,
     method: Method,
@@ -45,7 +45,7 @@ impl Estimator {
     pub fn new(settings: &Settings, calibration: &Calibration, revision: u8) -> Result<Self, ConfigError> {
         let ValidatedSettings { bank_config, method, hold, revision } =
             ValidatedSettings::new(settings, calibration, revision)?;
-        Ok(Self { bank: EstimatorBank::from_validated(bank_config), method, hold, revision })
+        Ok(Self { bank: EstimatorBank::from_validated(&bank_config), method, hold, revision })
     }
 
     /// Replaces the settings in place and resets all state: bounded work, for the interrupt itself.
@@ -59,8 +59,7 @@ impl Estimator {
     /// # Errors
     /// Why it was rejected.
     pub fn update(&mut self, sample: Sample) -> Result<Estimate, Rejection> {
-        let all = self.bank.update(sample)?;
-        Ok(all.get(self.method as usize).copied().unwrap_or(Estimate::UNKNOWN))
+        self.bank.update_one(self.method, sample)
     }
 
     /// Forgets everything but the settings.

@@ -44,11 +44,12 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// Block least squares over 300 samples at 20 Hz; held for 50 ms; the link may be silent.
+    /// The recommended law, [`palpate::CusumRls`], at 20 Hz, and 300 samples for methods on a window; held for 50 ms; the link may be
+    /// silent.
     fn default() -> Self {
         let sprls = SprlsConfig::default();
         Self {
-            method: Method::Bls,
+            method: Method::CusumRls,
             window: BlockConfig::default().window,
             cutoff: 20.0,
             velocity: Velocity::Matched,

@@ -250,3 +250,39 @@ impl<M: Moments> CompensatedSums<M> {
         moments.shifted(estimate.moved(-1.0, self.newer.centre))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::second_order::SecondOrderSums;
+    use crate::window::Window;
+
+    /// Small whole numbers, whose sums are exact in whatever order.
+    fn whole(k: u16) -> Observation {
+        let digit = |base: u16| f32::from(k % base) - f32::from(base / 2);
+        Observation { penetration: digit(7), rate: digit(11), force: digit(13) }
+    }
+
+    #[test]
+    fn a_window_that_was_not_followed_is_summed_anew() {
+        let config = BlockConfig { window: 40, minimum_fill: 2, ..BlockConfig::default() };
+        let mut ring = Window::<64>::new();
+        for k in 0..64 {
+            ring.push(whole(k));
+        }
+        let estimate = Impedance { stiffness: 1.0, damping: 2.0 };
+        for followed in [40, 20, 3] {
+            for length in [1, 2, 17, 25, 40] {
+                if length == (followed + 1).min(40) {
+                    continue;
+                }
+                let mut sums = CompensatedSums::<SecondOrderSums>::default();
+                sums.push(&config, ring.recent().last(followed), Impedance::ZERO);
+                let recent = ring.recent().last(length);
+                sums.push(&config, recent, estimate);
+                let got = sums.moments_about(estimate);
+                assert_eq!(got, SecondOrderSums::over(recent, estimate), "{length} samples after {followed}");
+            }
+        }
+    }
+}

@@ -62,3 +62,27 @@ impl Solution {
         if left > 0.0 { left / larger(samples - 2.0, 1.0) } else { 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two unknowns are taken off the count of samples, and at least one sample is left.
+    #[test]
+    fn the_residual_variance_is_unbiased() {
+        let sums = SecondOrderSums {
+            regressors: Sym2::diagonal(4.0, 2.0),
+            residual: Impedance { stiffness: 8.0, damping: 2.0 },
+            residual_energy: 30.0,
+            ..SecondOrderSums::default()
+        };
+        let solution = Solution::of(&sums, 8.0, &BlockConfig::default(), Impedance::ZERO);
+        assert_eq!(solution.correction, Impedance { stiffness: 2.0, damping: 1.0 });
+        // 30 - (2 * 8 + 1 * 2) = 12 over so many samples less two.
+        for (samples, variance) in [(8.0, 2.0), (6.0, 3.0), (5.0, 4.0), (3.0, 12.0), (2.0, 12.0)] {
+            assert_eq!(solution.residual_variance(&sums, samples), variance, "{samples} samples");
+        }
+        let explained = SecondOrderSums { residual_energy: 17.0, ..sums };
+        assert_eq!(solution.residual_variance(&explained, 8.0), 0.0, "rounding does not make it negative");
+    }
+}

@@ -358,4 +358,27 @@ mod tests {
             assert!(chunks <= MAX_CHUNKS && chunks <= chunk && 2 * chunk < u32::from(window), "{window}");
         }
     }
+
+    #[test]
+    fn a_window_that_was_not_followed_is_summed_anew() {
+        let config = BlockConfig { window: 40, minimum_fill: 2, ..BlockConfig::default() };
+        let mut ring = Window::<64>::new();
+        for k in 0..64 {
+            ring.push(whole(k));
+        }
+        let estimate = Impedance { stiffness: 1.0, damping: 2.0 };
+        for followed in [40, 20, 3] {
+            for length in [1, 2, 17, 25, 40] {
+                if length == (followed + 1).min(40) {
+                    continue;
+                }
+                let mut queue = TwoStackAggregate::<SecondOrderSums>::default();
+                queue.push(&config, ring.recent().last(followed), Impedance::ZERO);
+                let recent = ring.recent().last(length);
+                queue.push(&config, recent, estimate);
+                let CentredMoments { centre, moments } = queue.centred_moments(recent, estimate);
+                assert_eq!(moments, SecondOrderSums::over(recent, centre), "{length} samples after {followed}");
+            }
+        }
+    }
 }

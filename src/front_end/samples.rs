@@ -268,3 +268,46 @@ impl FrontEndState {
         self.filters_empty = false;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paper() -> FrontEnd {
+        let config = FrontEndConfig { velocity: Velocity::Paper, bilateral: true, ..FrontEndConfig::BENCH };
+        FrontEnd::new(config).expect("sound settings")
+    }
+
+    fn sample(position: f32, elapsed: f32) -> Sample {
+        Sample { position, force: 1.0, elapsed }
+    }
+
+    #[test]
+    fn the_rate_is_kept_within_the_range_in_both_directions() {
+        for direction in [1.0, -1.0] {
+            let (front_end, mut state) = (paper(), FrontEndState::default());
+            front_end.update(&mut state, sample(0.0, 1e-3)).expect("a sample");
+            // A metre in a nanosecond, taken by filters that begin with it.
+            let reading = front_end.update(&mut state, sample(direction, 1e-9)).expect("a sample");
+            let rate = reading.observation.rate;
+            assert!((rate / (direction * FrontEnd::MAX_MAGNITUDE) - 1.0).abs() < 1e-6, "{rate}");
+        }
+    }
+
+    #[test]
+    fn the_rate_of_a_held_tool_ends_at_zero_and_never_in_subnormal_numbers() {
+        let (front_end, mut state) = (paper(), FrontEndState::default());
+        let mut smallest = f32::INFINITY;
+        let mut last = f32::NAN;
+        for k in 0..2_000_u16 {
+            let position = 1e-3 * f32::from(k.min(50));
+            last = front_end.update(&mut state, sample(position, 1e-3)).expect("a sample").observation.rate.abs();
+            assert!(last == 0.0 || last >= FrontEnd::MIN_RATE, "{last:e} at {k}");
+            if last > 0.0 {
+                smallest = last.min(smallest);
+            }
+        }
+        assert_eq!(last, 0.0);
+        assert!(smallest < 1e-17, "it died away, down to {smallest:e}");
+    }
+}

@@ -40,4 +40,12 @@ mod tests {
             assert_eq!(depressed_root(p, q), None, "p {p}, q {q}");
         }
     }
+
+    /// A negative p has up to three real roots; the formula has a finite answer for some, which is none of this function's.
+    #[test]
+    fn a_negative_p_is_refused_also_where_the_formula_stays_finite() {
+        for (p, q) in [(-0.1, 1.0), (-0.1, -1.0), (-1e-3, 1e3), (-1.0, 0.0), (-f32::MIN_POSITIVE, 1.0)] {
+            assert_eq!(depressed_root(p, q), None, "p {p}, q {q}");
+        }
+    }
 }

@@ -181,4 +181,57 @@ mod tests {
         assert_eq!(student_t_975(0.9), f32::INFINITY);
         assert_eq!(student_t_975(f32::NAN), f32::INFINITY);
     }
+
+    /// An estimator of intervals in internal units, and a step whose half-widths are `half_width` to the bit.
+    fn assessed(estimate: [f32; 2], half_width: [f32; 2]) -> Estimate {
+        use crate::front_end::{FrontEndConfig, Units};
+        use crate::math::sym2::Sym2;
+        use crate::quality::Confidence;
+        let front_end = FrontEnd::new(FrontEndConfig { units: Units::SI, ..FrontEndConfig::BENCH }).expect("settings");
+        let estimator = IntervalEstimator::new(&front_end, SensorResolution::default());
+        let [of_k, of_b] = half_width;
+        let confidence = Confidence {
+            noise: Sym2::ZERO,
+            noise_gain: Sym2::ZERO,
+            startup_bias: Impedance { stiffness: of_k, damping: of_b },
+            offset_gain: Impedance::ZERO,
+            samples: 1e3,
+        };
+        let [stiffness, damping] = estimate;
+        let estimate = Impedance { stiffness, damping };
+        estimator.assess(&Step {
+            estimate,
+            innovation: 0.0,
+            confidence,
+            fill: 1.0,
+            excitation: 1.0,
+            flags: Flags::empty(),
+        })
+    }
+
+    #[test]
+    fn an_interval_is_flagged_above_thirty_hundredths_of_its_own_value() {
+        let (of_k, of_b) = (Flags::STIFFNESS_UNCERTAIN, Flags::DAMPING_UNCERTAIN);
+        for (half_width, want) in [
+            ([0.0, 0.0], Flags::empty()),
+            ([29.9, 2.99], Flags::empty()),
+            ([30.1, 2.99], of_k),
+            ([29.9, 3.01], of_b),
+            ([30.1, 3.01], of_k | of_b),
+        ] {
+            let told = assessed([100.0, 10.0], half_width);
+            assert_eq!([told.half_width.stiffness, told.half_width.damping], half_width);
+            assert_eq!(told.flags, want, "{half_width:?}");
+            assert_eq!(assessed([-100.0, -10.0], half_width).flags, want | Flags::NEGATIVE, "{half_width:?}");
+        }
+    }
+
+    #[test]
+    fn a_negative_value_of_either_parameter_is_flagged() {
+        for (estimate, negative) in
+            [([1.0, 1.0], false), ([0.0, 0.0], false), ([-1.0, 1.0], true), ([1.0, -1.0], true), ([-1.0, -1.0], true)]
+        {
+            assert_eq!(assessed(estimate, [0.0; 2]).flags.contains(Flags::NEGATIVE), negative, "{estimate:?}");
+        }
+    }
 }

@@ -95,3 +95,37 @@ impl Covariance {
         self.d1 + self.d2 <= limit && self.d1 * self.d2 > 0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_factor_has_a_limit_of_its_own() {
+        for (limits, want, cut) in [
+            ((8.0, 9.0), (5.0, 7.0), false),
+            ((5.0, 7.0), (5.0, 7.0), false),
+            ((4.0, 9.0), (4.0, 7.0), true),
+            ((8.0, 6.0), (5.0, 6.0), true),
+            ((4.0, 6.0), (4.0, 6.0), true),
+        ] {
+            let mut covariance = Covariance::diagonal(5.0, 7.0);
+            let limited = covariance.limit_each(Impedance { stiffness: limits.0, damping: limits.1 });
+            assert_eq!(limited, cut, "{limits:?}");
+            assert_eq!(covariance.matrix(), Sym2::diagonal(want.0, want.1), "{limits:?}");
+        }
+        let mut covariance = Covariance::diagonal(5.0, 7.0);
+        assert!(covariance.limit(6.0));
+        assert_eq!(covariance.matrix(), Sym2::diagonal(5.0, 6.0));
+    }
+
+    #[test]
+    fn a_factor_that_is_not_positive_or_not_finite_is_unsound() {
+        assert!(Covariance::diagonal(1.0, 2.0).is_sound());
+        for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert!(!Covariance::diagonal(wrong, 2.0).is_sound(), "{wrong}");
+            assert!(!Covariance::diagonal(1.0, wrong).is_sound(), "{wrong}");
+        }
+        assert!(!Covariance { d1: 1.0, d2: 1.0, u: f32::NAN }.is_sound());
+    }
+}

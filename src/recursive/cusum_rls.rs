@@ -134,3 +134,25 @@ impl UpdateLaw for CusumRls {
         if (c.noise.xx + c.noise_gain.xx).is_nan() { Step { confidence: Confidence::NONE, ..step } } else { step }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::sym2::Sym2;
+
+    /// Rows that say nothing: the covariance is divided by the forgetting factor at each.
+    #[test]
+    fn a_contact_that_says_nothing_lets_the_covariance_grow_to_four_times_the_prior_and_no_further() {
+        let config = CusumRlsConfig { forgetting_factor: 0.75, ..CusumRlsConfig::default() };
+        let law = CusumRls::new(config).expect("sound settings");
+        let mut state = law.initial_state();
+        let prior = config.prior.variances();
+        let rows = [Observation::default()];
+        let limited: [bool; 8] =
+            core::array::from_fn(|_| law.update(&mut state, Recent::of(&rows)).flags.contains(Flags::LIMITED));
+        // (4/3)^4 = 3.2 and (4/3)^5 = 4.2.
+        assert_eq!(limited, [false, false, false, false, true, true, true, true]);
+        let most = Sym2::diagonal(4.0 * prior.stiffness, 4.0 * prior.damping);
+        assert_eq!(state.recursion.covariance.matrix(), most);
+    }
+}

@@ -128,3 +128,33 @@ impl UpdateLaw for DirectionalRls {
 
 /// Largest forgetting factor for fill and excitation.
 const MAX_FORGETTING: f32 = 0.999;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALONG_K: Impedance = Impedance { stiffness: 1.0, damping: 0.0 };
+    const ALONG_B: Impedance = Impedance { stiffness: 0.0, damping: 1.0 };
+
+    fn law() -> DirectionalRls {
+        let config = DirectionalRlsConfig { forgetting_factor: 0.75, ..DirectionalRlsConfig::default() };
+        DirectionalRls::new(config).expect("sound settings")
+    }
+
+    #[test]
+    fn information_is_forgotten_along_the_regressor_alone() {
+        let known = Sym2::diagonal(4.0, 8.0);
+        assert_eq!(law().forgotten(known, ALONG_K), Sym2::diagonal(3.0, 8.0));
+        assert_eq!(law().forgotten(known, ALONG_B), Sym2::diagonal(4.0, 6.0));
+        assert_eq!(law().forgotten(known, Impedance::ZERO), known);
+    }
+
+    /// Rounding can leave the information with a determinant below zero; a quarter of what lies along the regressor is then
+    /// more than there is across it.
+    #[test]
+    fn information_that_forgetting_would_make_negative_is_kept() {
+        let unsound = Sym2 { xx: 1.0, xv: 4.0, vv: 1.0 };
+        assert_eq!(law().forgotten(unsound, ALONG_K), unsound);
+        assert_eq!(law().forgotten(unsound, ALONG_B), unsound);
+    }
+}

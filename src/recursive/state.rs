@@ -120,3 +120,59 @@ pub(crate) fn check_initial_covariance(value: f32) -> Result<(), ConfigError> {
     require_positive(value, "initial_covariance")?;
     require(value <= 1e8, "initial_covariance", "at most 1e8 internal units")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::sym2::Sym2;
+
+    const START: Impedance = Impedance { stiffness: 3.0, damping: 4.0 };
+    const GAIN: Impedance = Impedance { stiffness: 2.0, damping: 1.0 };
+
+    #[test]
+    fn a_sound_step_is_taken_whole() {
+        let mut state = RecursiveState::new(10.0, START);
+        assert_eq!(state.commit(GAIN, 0.5, Covariance::diagonal(1.0, 2.0), 10.0), Flags::empty());
+        assert_eq!(state.estimate, Impedance { stiffness: 4.0, damping: 4.5 });
+        assert_eq!(state.covariance.matrix(), Sym2::diagonal(1.0, 2.0));
+    }
+
+    #[test]
+    fn an_unsound_covariance_is_never_taken_and_the_covariance_begins_anew() {
+        for wrong in [
+            Covariance::diagonal(-1.0, 2.0),
+            Covariance::diagonal(1.0, -2.0),
+            Covariance::diagonal(0.0, 2.0),
+            Covariance::diagonal(f32::NAN, 2.0),
+            Covariance::diagonal(1.0, f32::INFINITY),
+        ] {
+            let mut state = RecursiveState::new(10.0, START);
+            state.covariance = Covariance::diagonal(5.0, 6.0);
+            assert_eq!(state.commit(GAIN, 0.5, wrong, 10.0), Flags::RESET, "{wrong:?}");
+            assert_eq!(state.estimate, START, "{wrong:?}");
+            assert_eq!(state.covariance, Covariance::identity(10.0), "{wrong:?}");
+            let mut state = RecursiveState::new(10.0, START);
+            assert!(!state.commit_plain(GAIN, 0.5, wrong, 100.0), "{wrong:?}");
+            assert_eq!((state.estimate, state.covariance), (START, Covariance::identity(10.0)), "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn an_estimate_that_is_not_finite_is_never_taken_and_the_covariance_begins_anew() {
+        for innovation in [f32::INFINITY, f32::NAN, f32::MAX] {
+            let mut state = RecursiveState::new(10.0, START);
+            let sound = Covariance::diagonal(1.0, 2.0);
+            assert_eq!(state.commit(GAIN, innovation, sound, 7.0), Flags::RESET, "{innovation}");
+            assert_eq!((state.estimate, state.covariance), (START, Covariance::identity(7.0)), "{innovation}");
+        }
+    }
+
+    #[test]
+    fn what_needs_a_limit_is_left_to_the_full_update() {
+        let mut state = RecursiveState::new(10.0, START);
+        assert!(!state.commit_plain(GAIN, 0.5, Covariance::diagonal(60.0, 50.0), 100.0));
+        assert_eq!((state.estimate, state.covariance), (START, Covariance::identity(10.0)));
+        assert!(state.commit_plain(GAIN, 0.5, Covariance::diagonal(60.0, 40.0), 100.0));
+        assert_eq!(state.covariance, Covariance::diagonal(60.0, 40.0));
+    }
+}

@@ -27,11 +27,11 @@ fn upset(random: &mut Random, input: Input) -> Input {
     }
 }
 
-/// Three million ticks of storms and lulls for three methods; more with PALPATE_FUZZ.
+/// Four million ticks of storms and lulls for four methods; more with PALPATE_FUZZ.
 #[test]
 fn fuzz_in_any_weather_it_never_stops_never_lies_and_comes_back_within_a_window() {
     let ticks = u32::try_from(fuzz_count() * 5).expect("fewer than 2^32 ticks");
-    for (seed, method) in [(1, Method::Ewrls), (2, Method::Bls), (3, Method::Blmf)] {
+    for (seed, method) in [(1, Method::Ewrls), (2, Method::Bls), (3, Method::Blmf), (4, Method::CusumRls)] {
         let settings = Settings { method, ..Settings::default() };
         with_cycle(settings, Faults::empty(), |cycle, counters| {
             let mut random = Random::new(seed);
@@ -86,6 +86,7 @@ fn after_the_worst_storm_the_stiffness_is_known_again() {
         (Method::Blms, 400),
         (Method::Blmf, 700),
         (Method::NewtonBlmf, 700),
+        (Method::CusumRls, 3_000),
         (Method::Ewrls, 3_000),
         (Method::Sprls, 3_000),
         (Method::ResetRls, 3_000),

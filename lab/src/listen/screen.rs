@@ -89,7 +89,7 @@ pub fn identity(about: &DriveInfo) -> String {
     let (calibration, settings) = (&about.calibration, &about.settings);
     format!(
         "drive {} on {place}, image {:08x}; last reset: {reset}; found at its start: {found}\n\
-         calibration of {}: {:.3e} m and {:.3e} N a count; {} over {} samples, cut-off {} Hz",
+         calibration of {}: {:.3e} m and {:.3e} N a count; {}, window {} samples, cut-off {} Hz",
         about.version,
         about.image,
         calibration.date,

@@ -32,10 +32,13 @@ fn no_panic_can_be_reached_from_either_interrupt_of_the_drive() {
     assert!(!idle.is_empty(), "no panic is seen anywhere in the image");
 }
 
-/// Instructions of a tick at most, whatever it is fed: an eighth of the 125 000 that QEMU is given for a millisecond, which leaves
-/// the rest to a current loop. What varies from run to run is how many bytes of the line come within a tick: QEMU hands them over
-/// faster than any line could.
-const MOST: u32 = 15_625;
+/// Instructions of a tick at most, whatever it is fed and whatever is asked of it: a twentieth of the 125 000 that QEMU is given
+/// for a millisecond, which leaves the rest to a current loop. What varies from run to run is how many bytes of the line come within
+/// a tick: QEMU hands them over faster than any line could.
+const MAX_INSTRUCTIONS: u32 = 6_000;
+
+/// Instructions of the median tick that takes a sample, from its words to a report with estimate, intervals and flags.
+const MAX_LIVE_INSTRUCTIONS: u32 = 1_600;
 
 #[test]
 fn the_longest_tick_is_counted_and_leaves_room_for_a_current_loop() {
@@ -44,7 +47,10 @@ fn the_longest_tick_is_counted_and_leaves_room_for_a_current_loop() {
     }
     for cost in interrupt_costs().unwrap_or_else(|error| panic!("{error:#}")) {
         eprintln!("{cost:?}");
-        assert!(cost.ticks > 2_000 && cost.most < MOST, "{cost:?}");
+        assert!(cost.ticks > 2_000 && cost.most < MAX_INSTRUCTIONS, "{cost:?}");
+        if !cost.what.contains("faults") {
+            assert!(cost.median_live.is_none_or(|median| median < MAX_LIVE_INSTRUCTIONS), "{cost:?}");
+        }
     }
 }
 

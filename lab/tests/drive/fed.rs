@@ -28,7 +28,7 @@ fn assert_same(what: &str, settings: Settings, revision: u8, fed: &[Input], hear
 fn every_estimate_of_what_is_fed_has_the_bits_of_the_host() {
     let Some(image) = image() else { return };
     let words = words(8.0);
-    for method in [Method::Bls, Method::Sprls, Method::NewtonBlmf] {
+    for method in [Method::CusumRls, Method::Bls, Method::Sprls, Method::NewtonBlmf] {
         let (_drive, mut client) = drive(image, None);
         // A call that came while the line was being set up may have been heard in part.
         let before = client.counters().expect("counters").link_counters;
@@ -107,7 +107,7 @@ fn a_recording_made_through_the_link_replays_to_the_same_estimates() {
     let rig = Rig::read(&toml).unwrap_or_else(|error| panic!("{error}"));
     let recording = palpate_lab::recording::Recording::read(&csv, &rig).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(recording.time.len(), fed.len() - 3);
-    let options = Options { methods: vec![Method::Bls], ..Options::default() };
+    let options = Options { methods: vec![Settings::default().method], ..Options::default() };
     let replayed = replay(&Runner::Host, &rig, &toml, recording, &options).unwrap_or_else(|error| panic!("{error:#}"));
     let columns = replayed.trace.columns();
     let (_, estimates) = columns.first().expect("a method");

@@ -19,7 +19,7 @@ pub const REPORTS: usize = 65;
 pub const INPUTS: usize = 129;
 /// Jobs that wait for the interrupt.
 pub const JOBS: usize = 5;
-/// Settings that wait for the interrupt: one, 3.5 kB.
+/// Settings that wait for the interrupt: one.
 pub const SETTINGS: usize = 2;
 
 /// What the idle loop asks for.
