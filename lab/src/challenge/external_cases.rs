@@ -327,6 +327,7 @@ mod tests {
         let rows = vec![
             row(&[], &[], &[], &[]),
             row(&[], &[], &["adhesion"], &[]),
+            row(&[], &[], &["unknown"], &[]),
             row(&[], &[&["adhesion"]], &["adhesion"], &[]),
             row(&["adhesion"], &[], &["adhesion"], &[]),
             row(&["adhesion"], &[], &["cogging"], &["adhesion"]),
@@ -338,8 +339,8 @@ mod tests {
             row(&["unknown"], &[&["cogging"]], &["cogging"], &[]),
         ];
         let score = ExternalSetScore::of("elsewhere", rows);
-        assert_eq!(score.cases, 11);
-        assert_eq!((score.none.n, score.none.false_alarms), (3, 1));
+        assert_eq!(score.cases, 12);
+        assert_eq!((score.none.n, score.none.false_alarms), (4, 2));
         let expected = ExternalSingleCounts { n: 3, detected: 2, named_rightly: 1, within_rivals: 2 };
         assert_eq!(score.single, expected);
         assert_eq!((score.pairs.n, score.pairs.named_rightly), (2, 1));
