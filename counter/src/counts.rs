@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
+use std::ops::Range;
 use std::path::PathBuf;
 
 use crate::costs::{Cost, Costs};
@@ -30,6 +31,7 @@ pub struct Counts {
     begin: u64,
     end: u64,
     case: u64,
+    excluded: Range<u64>,
     costs: Costs,
     out: PathBuf,
     cases: Vec<Case>,
@@ -38,13 +40,17 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Nothing counted yet.
-    pub fn new(begin: u64, end: u64, case: u64, costs: Costs, out: PathBuf) -> Self {
-        Self { begin, end, case, costs, out, cases: Vec::new(), present: None, before: None }
+    /// Nothing counted yet. Instructions in `excluded` are never counted.
+    pub fn new(region: Range<u64>, case: u64, excluded: Range<u64>, costs: Costs, out: PathBuf) -> Self {
+        let Range { start: begin, end } = region;
+        Self { begin, end, case, excluded, costs, out, cases: Vec::new(), present: None, before: None }
     }
 
     /// The instruction at `address` is about to be executed.
     pub fn execute(&mut self, address: u64) {
+        if self.excluded.contains(&address) {
+            return;
+        }
         if address == self.case {
             self.cases.push(Case::default());
         } else if address == self.begin {

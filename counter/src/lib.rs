@@ -1,7 +1,8 @@
 //! A plugin of QEMU (interface version 1) that counts every instruction between two addresses of the image.
 //!
 //! Arguments: `begin` and `end`, the addresses of the region's first instruction and of the first behind it; `case`, an address
-//! that is passed where another estimator begins; `costs`, a file of what each instruction costs; `out`, where
+//! that is passed where another estimator begins; `excluded_begin` and `excluded_end`, the addresses of a function that may interrupt
+//! the region and is not counted, where there is one; `costs`, a file of what each instruction costs; `out`, where
 //! the counts go. For each pass through the region the plugin writes `pass INSTRUCTIONS LO HI`, for each estimator
 //! `case`, and behind it `at ADDRESS TIMES` for each instruction that was executed.
 
@@ -71,7 +72,12 @@ fn prepare(arguments: &[String]) -> Result<Counts, String> {
         text.parse::<u64>().map_err(|_| format!("{name}={text}: expected an address in decimal"))
     };
     let costs = Costs::read(value("costs")?)?;
-    Ok(Counts::new(address("begin")?, address("end")?, address("case")?, costs, PathBuf::from(value("out")?)))
+    let excluded = match value("excluded_begin") {
+        Ok(_) => address("excluded_begin")?..address("excluded_end")?,
+        Err(_) => 0..0,
+    };
+    let region = address("begin")?..address("end")?;
+    Ok(Counts::new(region, address("case")?, excluded, costs, PathBuf::from(value("out")?)))
 }
 
 /// A block was translated: every instruction of it gets a callback at its execution. By address alone, for QEMU 7.2 gives

@@ -99,6 +99,8 @@ pub struct FrontEnd {
     to_penetration: f32,
     to_force: f32,
     to_rate: f32,
+    /// Seconds within which a period is the nominal one.
+    period_tolerance: f32,
 }
 
 /// A sample as the next one needs it, in internal units.
@@ -159,6 +161,7 @@ impl FrontEnd {
             to_penetration: 1.0 / units.penetration,
             to_force: 1.0 / units.force,
             to_rate: units.penetration / units.rate,
+            period_tolerance: Self::PERIOD_TOLERANCE * config.period,
         })
     }
 
@@ -178,39 +181,84 @@ impl FrontEnd {
     ///
     /// # Errors
     /// Why it was rejected; then only the elapsed time is taken over.
+    // Inlined: as a call it hands its result over in memory, which is a tenth of its cost.
+    #[inline(always)]
     pub fn update(&self, state: &mut FrontEndState, sample: Sample) -> Result<Reading, Rejection> {
-        let (penetration, force) = self.validated(&sample).inspect_err(|_| {
+        // One comparison each for the usual sample: within the range, a nominal period after the one before, filters running. What is
+        // no number compares false. All else goes the long way, which does the same.
+        let (penetration, force) = self.internal(&sample);
+        let usual = penetration.abs() <= Self::MAX_MAGNITUDE
+            && force.abs() <= Self::MAX_MAGNITUDE
+            && self.is_nominal(sample.elapsed)
+            && state.skipped == 0.0
+            && !state.filters_empty;
+        match state.previous {
+            Some(previous) if usual => {
+                let (now, contact) = self.touch(state, penetration, force);
+                let row = self.unfiltered_row(&previous, &now, sample.elapsed);
+                let observation = self.filtered(state, &self.nominal, &row, &now);
+                Ok(Reading { observation, contact, restarted: false })
+            }
+            _ => self.update_unusual(state, &sample),
+        }
+    }
+
+    /// [`Self::update`] for any sample. Apart, so that the usual one does not pay for it.
+    #[inline(never)]
+    fn update_unusual(&self, state: &mut FrontEndState, sample: &Sample) -> Result<Reading, Rejection> {
+        let (penetration, force) = self.validated(sample).inspect_err(|_| {
             if sample.elapsed.is_finite() && sample.elapsed > 0.0 {
                 state.skipped += sample.elapsed;
             }
         })?;
         let elapsed = sample.elapsed + state.skipped;
         state.skipped = 0.0;
+        let previous = state.previous;
+        let (now, contact) = self.touch(state, penetration, force);
+        let (Some(previous), Some(filter)) = (previous, self.filter_for(elapsed)) else {
+            state.filters_empty = true;
+            let observation = Observation { penetration: now.depth, rate: 0.0, force };
+            return Ok(Reading { observation, contact, restarted: true });
+        };
+        let row = self.unfiltered_row(&previous, &now, elapsed);
+        if state.filters_empty {
+            state.start_filters(&row);
+        }
+        let observation = self.filtered(state, &filter, &row, &now);
+        Ok(Reading { observation, contact, restarted: false })
+    }
+
+    /// Takes a sample over as the newest; whether the tool is in contact.
+    #[inline(always)]
+    fn touch(&self, state: &mut FrontEndState, penetration: f32, force: f32) -> (PreviousSample, bool) {
         let contact =
             self.config.bilateral || self.contact_detector.update(&mut state.contact_detector, penetration, force);
         let depth = if self.config.bilateral { penetration } else { larger(penetration, 0.0) };
         let now = PreviousSample { penetration, depth, force };
-        let (Some(previous), Some(filter)) = (state.previous.replace(now), self.filter_for(elapsed)) else {
-            state.filters_empty = true;
-            let observation = Observation { penetration: depth, rate: 0.0, force };
-            return Ok(Reading { observation, contact, restarted: true });
-        };
-        let unfiltered_row = self.unfiltered_row(&previous, &now, elapsed);
-        if state.filters_empty {
-            state.start_filters(&unfiltered_row);
-        }
-        let rate = filter.update(&mut state.rate, unfiltered_row.rate);
+        state.previous = Some(now);
+        (now, contact)
+    }
+
+    /// The row behind the low-pass; penetration and force of the sample `now` itself where the filter is not matched.
+    #[inline(always)]
+    fn filtered(
+        &self,
+        state: &mut FrontEndState,
+        filter: &LowPass,
+        row: &Observation,
+        now: &PreviousSample,
+    ) -> Observation {
+        let rate = filter.update(&mut state.rate, row.rate);
         // The rate of a held tool dies away for ever: below this it is zero, and not a subnormal that stalls a host.
         let rate = if rate.abs() < Self::MIN_RATE { 0.0 } else { rate };
-        let observation = match self.config.velocity {
-            Velocity::Paper => Observation { penetration: depth, rate, force },
+        match self.config.velocity {
+            Velocity::Paper => Observation { penetration: now.depth, rate, force: now.force },
             Velocity::Matched => Observation {
-                penetration: filter.update(&mut state.penetration, unfiltered_row.penetration),
+                penetration: filter.update(&mut state.penetration, row.penetration),
                 rate,
-                force: filter.update(&mut state.force, unfiltered_row.force),
+                force: filter.update(&mut state.force, row.force),
             },
-        };
-        Ok(Reading { observation, contact, restarted: false })
+        }
     }
 
     /// The row between two samples, not yet filtered: means and the difference, which belong to one instant.
@@ -228,14 +276,19 @@ impl FrontEnd {
     }
 
     /// Penetration and force in internal units.
+    #[inline(always)]
+    fn internal(&self, sample: &Sample) -> (f32, f32) {
+        ((sample.position - self.config.surface) * self.to_penetration, sample.force * self.to_force)
+    }
+
+    /// The same where the sample is not to be rejected.
     fn validated(&self, sample: &Sample) -> Result<(f32, f32), Rejection> {
         let fields =
             [(sample.position, Field::Position), (sample.force, Field::Force), (sample.elapsed, Field::Elapsed)];
         if let Some((_, field)) = fields.into_iter().find(|(value, _)| !value.is_finite()) {
             return Err(Rejection::NotFinite(field));
         }
-        let penetration = (sample.position - self.config.surface) * self.to_penetration;
-        let force = sample.force * self.to_force;
+        let (penetration, force) = self.internal(sample);
         if penetration.abs() > Self::MAX_MAGNITUDE {
             Err(Rejection::OutOfRange(Field::Position))
         } else if force.abs() > Self::MAX_MAGNITUDE {
@@ -247,10 +300,15 @@ impl FrontEnd {
         }
     }
 
+    /// Whether a step of `elapsed` seconds is one of the nominal period.
+    #[inline(always)]
+    fn is_nominal(&self, elapsed: f32) -> bool {
+        (elapsed - self.config.period).abs() <= self.period_tolerance
+    }
+
     /// The filter for a step of `elapsed` seconds; `None` where the step is a gap that no filter can bridge.
     fn filter_for(&self, elapsed: f32) -> Option<LowPass> {
-        let period = self.config.period;
-        if (elapsed - period).abs() <= Self::PERIOD_TOLERANCE * period {
+        if self.is_nominal(elapsed) {
             return Some(self.nominal);
         }
         let cycles = self.config.cutoff * elapsed;
