@@ -1,0 +1,27 @@
+//! The drive's channel: a stochastic grey box in innovations form.
+//!
+//! The drive is a continuous-discrete state space model, driven by the recorded effort and contact force and corrected at each encoder
+//! row by a Kalman filter; what no law accounts for is a white force whose density is fitted with the values (Madsen, Kristensen,
+//! Jorgensen, *Computers and Chemical Engineering* 28, 2004; Ljung, *System Identification*, 1999). Nothing is differentiated and no
+//! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
+//!
+//! [`trial`] and [`input`] are the data, [`law`] and [`noise`] the equations, [`filter`] the innovations, [`model`] and [`term`] what
+//! can be in a law, [`fit`] the likelihood, [`candidates`], [`links`] and [`selection`] the choice with its [`criteria`],
+//! [`held_out`] and [`interval`] the evidence, and [`outcome`] the answer.
+
+pub mod candidates;
+pub mod criteria;
+pub mod filter;
+pub mod fit;
+pub mod held_out;
+pub mod input;
+pub mod interval;
+pub mod law;
+pub mod links;
+pub mod matrix;
+pub mod model;
+pub mod noise;
+pub mod outcome;
+pub mod selection;
+pub mod term;
+pub mod trial;

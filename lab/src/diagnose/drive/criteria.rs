@@ -1,0 +1,47 @@
+//! When a term is worth having: every number that decides, with its meaning and where it comes from.
+
+/// Gain of log likelihood that a term needs, nats, and more for each value: Schwarz's criterion asks (ln rows) / 2 a value, 5.3 at
+/// 40 000 rows; the rest is for the choice among some fifteen terms (ln 15 = 2.7) and their starts.
+pub const LEAST_GAIN: f64 = 10.0;
+/// See [`LEAST_GAIN`].
+pub const LEAST_GAIN_PER_VALUE: f64 = 5.0;
+
+/// Vuong's statistic over blocks, in deviations: the gain has to be there throughout, not in one place. Three deviations are one
+/// chance in 700 (Vuong, *Econometrica* 57, 1989).
+pub const LEAST_VUONG: f64 = 3.0;
+
+/// Length of a block over which row likelihoods are taken together, s: longer than innovations of a wrong model remember.
+pub const BLOCK_S: f64 = 0.5;
+/// Fewest rows of a block.
+pub const BLOCK_ROWS: usize = 20;
+
+/// Share of the unexplained power that a term has to take: a quarter, 13 % of its root mean square. Chosen: textbook laws differ
+/// from real friction by less.
+pub const LEAST_SHARE: f64 = 0.25;
+
+/// The same for a ripple whose pitch is free: it can follow any wavy mismatch, so it has to take half of it. Chosen.
+pub const LEAST_RIPPLE_SHARE: f64 = 0.5;
+
+/// What a term takes, over all that was unexplained before any, in root mean square. Chosen: the difference between two laws of one
+/// friction lies below it (LuGre's bristle against Coulomb's law: 0.03).
+pub const LEAST_PART_OF_ALL: f64 = 0.1;
+
+/// Part of the unexplained force that is left, below which nothing further is looked for.
+pub const NEGLIGIBLE_PART: f64 = 0.05;
+
+/// Part of the unexplained force that is left by one body, from which a link or a play is looked for: it takes the longest.
+pub const LINK_PART: f64 = 0.3;
+
+/// Part of the effort's standard deviation below which a force is not told as missing, whatever its significance: no drive is known
+/// that well.
+pub const LEAST_PART_OF_EFFORT: f64 = 0.003;
+
+/// Part of the mismatch that may be left beside named physics before `unknown` is told beside it.
+pub const MOST_LEFT: f64 = 0.6;
+
+/// Part of the effort above which a mismatch that nothing explains is called unknown.
+pub const UNKNOWN_PART_OF_EFFORT: f64 = 0.02;
+
+/// Part of a mismatch that a free curve over position leaves of what named physics leaves, below which the names are not believed
+/// alone.
+pub const CURVE_PART: f64 = 0.5;

@@ -1,0 +1,77 @@
+//! What a model leaves of rows that its values were not fitted to.
+
+use super::filter::innovations;
+use super::fit::{Data, Fit, search_values};
+use super::noise::Noise;
+use super::trial::DriveTrial;
+
+/// Two halves of the recordings: every other trial, or the halves of a single one. Each is fitted once and judged once.
+pub struct Folds {
+    halves: [Vec<DriveTrial>; 2],
+    /// For each half, the trial and the first row of each of its pieces.
+    places: [Vec<(usize, usize)>; 2],
+}
+
+/// Missing force under the values of the other half, a column a trial, and the values that each half gave.
+pub struct HeldOut {
+    /// N or N m, row by row.
+    pub missing: Vec<Vec<f64>>,
+    /// Fitted to the first half, and to the second.
+    pub values: [Vec<f64>; 2],
+}
+
+/// Steps of the search on a half, from the values of the whole.
+const STEPS: usize = 5;
+
+impl Folds {
+    /// The halves of `trials`.
+    #[must_use]
+    pub fn of(trials: &[DriveTrial]) -> Self {
+        let mut folds = Self { halves: [Vec::new(), Vec::new()], places: [Vec::new(), Vec::new()] };
+        let mut put = |half: usize, trial: usize, rows: std::ops::Range<usize>| {
+            folds.places[half].push((trial, rows.start));
+            folds.halves[half].push(trials[trial].slice(rows));
+        };
+        match trials {
+            [single] => {
+                let middle = single.len() / 2;
+                put(0, 0, 0..middle);
+                put(1, 0, middle..single.len());
+            }
+            all => all.iter().enumerate().for_each(|(at, trial)| put(at % 2, at, 0..trial.len())),
+        }
+        folds
+    }
+
+    /// Fits the values of `fit` on each half and takes what is missing on the other, smoothed with `common` noise for all models alike.
+    #[must_use]
+    pub fn held_out(&self, data: &Data<'_>, fit: &Fit, common: &Noise) -> HeldOut {
+        let mut missing: Vec<Vec<f64>> = data.trials.iter().map(|trial| vec![0.0; trial.len()]).collect();
+        let values = [0, 1].map(|half| {
+            let own = Data { trials: &self.halves[half], ..*data };
+            let mut values = fit.values.clone();
+            search_values(&own, &fit.model, &mut values, &fit.noise, STEPS);
+            let law = fit.model.law(&values);
+            for (piece, (trial, start)) in self.halves[1 - half].iter().zip(&self.places[1 - half]) {
+                let force = innovations(piece, &law, common, true).disturbance;
+                missing[*trial][*start..*start + force.len()].copy_from_slice(&force);
+            }
+            values
+        });
+        HeldOut { missing, values }
+    }
+}
+
+/// What fixed values leave, a column a trial.
+#[must_use]
+pub fn missing_force(data: &Data<'_>, fit: &Fit, common: &Noise) -> Vec<Vec<f64>> {
+    let law = fit.model.law(&fit.values);
+    data.trials.iter().map(|trial| innovations(trial, &law, common, true).disturbance).collect()
+}
+
+/// Root mean square over all trials.
+#[must_use]
+pub fn rms(columns: &[Vec<f64>]) -> f64 {
+    let rows: usize = columns.iter().map(Vec::len).sum();
+    (columns.iter().flatten().map(|value| value * value).sum::<f64>() / rows.max(1) as f64).sqrt()
+}

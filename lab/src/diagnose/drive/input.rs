@@ -1,0 +1,141 @@
+//! What acts on the drive between two encoder rows: means of held and of sampled signals, early or late by any time.
+
+use super::law::DriveLaw;
+use super::trial::DriveTrial;
+
+/// Mean effort and mean contact force over the interval that ends at each encoder row, N or N m. Row 0 holds nothing.
+#[derive(Debug, Clone)]
+pub struct Inputs {
+    /// Effort that acts on the motor.
+    pub effort: Vec<f64>,
+    /// Force with which the tool pushes on what it touches; zero where none is recorded.
+    pub force: Vec<f64>,
+}
+
+impl Inputs {
+    /// The inputs of `trial` under the actuator and the force sensor of `law`.
+    #[must_use]
+    pub fn of(trial: &DriveTrial, law: &DriveLaw) -> Self {
+        let clipped = |effort: f64| effort.clamp(-law.effort_limit, law.effort_limit);
+        let held = Integral::held(&trial.source_time, trial.effort.iter().map(|effort| clipped(*effort)));
+        let mut effort = held.means(&trial.time, -law.effort_delay_s);
+        if law.effort_lag_s > 0.0 {
+            first_order_lag(&mut effort, &trial.time, law.effort_lag_s);
+        }
+        let force = trial.force.as_ref().map_or_else(
+            || vec![0.0; trial.len()],
+            |force| {
+                let gain = 1.0 + law.force_gain_error;
+                let sampled = Integral::sampled(&trial.source_time, force.iter().map(|force| force / gain));
+                sampled.means(&trial.time, law.force_delay_s)
+            },
+        );
+        Self { effort, force }
+    }
+}
+
+/// Passes `means` (of each interval) through a first-order lag, exactly: du/dt = (input - u) / lag.
+fn first_order_lag(means: &mut [f64], time: &[f64], lag_s: f64) {
+    let mut state = means.get(1).copied().unwrap_or(0.0);
+    for row in 1..means.len() {
+        let step = time[row] - time[row - 1];
+        let (input, decay) = (means[row], (-step / lag_s).exp());
+        means[row] = input + (state - input) * (lag_s / step) * (1.0 - decay);
+        state = input + (state - input) * decay;
+    }
+}
+
+/// Integral of a signal over time, from which the mean over any interval follows.
+struct Integral<'a> {
+    time: &'a [f64],
+    values: Vec<f64>,
+    total: Vec<f64>,
+    held: bool,
+}
+
+impl<'a> Integral<'a> {
+    /// Of a signal that holds each value until the next row, as an effort between two control ticks.
+    fn held(time: &'a [f64], values: impl Iterator<Item = f64>) -> Self {
+        Self::new(time, values.collect(), true)
+    }
+
+    /// Of a signal that runs straight from each value to the next, as a sampled force.
+    fn sampled(time: &'a [f64], values: impl Iterator<Item = f64>) -> Self {
+        Self::new(time, values.collect(), false)
+    }
+
+    fn new(time: &'a [f64], values: Vec<f64>, held: bool) -> Self {
+        let mut total = vec![0.0; time.len()];
+        for row in 1..time.len() {
+            let level = if held { values[row - 1] } else { 0.5 * (values[row - 1] + values[row]) };
+            total[row] = total[row - 1] + level * (time[row] - time[row - 1]);
+        }
+        Self { time, values, total, held }
+    }
+
+    /// The integral up to `at`, `row` being a row near it: signals are constant before the first and after the last row.
+    fn up_to(&self, at: f64, row: &mut usize) -> f64 {
+        let last = self.time.len() - 1;
+        while *row < last && self.time[*row + 1] <= at {
+            *row += 1;
+        }
+        while *row > 0 && self.time[*row] > at {
+            *row -= 1;
+        }
+        let since = at - self.time[*row];
+        let (level, next) = (self.values[*row], self.values[(*row + 1).min(last)]);
+        if self.held || since <= 0.0 || *row == last {
+            return self.total[*row] + level * since;
+        }
+        let slope = (next - level) / (self.time[*row + 1] - self.time[*row]);
+        self.total[*row] + since * (level + 0.5 * slope * since)
+    }
+
+    /// Mean over each interval of `rows`, moved by `shift` seconds.
+    fn means(&self, rows: &[f64], shift: f64) -> Vec<f64> {
+        let mut near = 0;
+        let mut before = rows.first().map_or(0.0, |first| self.up_to(first + shift, &mut near));
+        let mut means = vec![0.0; rows.len()];
+        for row in 1..rows.len() {
+            let after = self.up_to(rows[row] + shift, &mut near);
+            means[row] = (after - before) / (rows[row] - rows[row - 1]);
+            before = after;
+        }
+        means
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_held_signal_that_is_late_by_a_quarter_of_a_row_is_mixed_of_both() {
+        let time = [0.0, 1.0, 2.0, 3.0];
+        let held = Integral::held(&time, [4.0, 8.0, 2.0, 2.0].into_iter());
+        assert_eq!(held.means(&time, -0.25), [0.0, 4.0, 7.0, 3.5]);
+        assert_eq!(held.means(&time, 0.0), [0.0, 4.0, 8.0, 2.0]);
+    }
+
+    #[test]
+    fn a_sampled_signal_is_integrated_along_straight_lines() {
+        let time = [0.0, 1.0, 3.0];
+        let sampled = Integral::sampled(&time, [0.0, 2.0, 6.0].into_iter());
+        assert_eq!(sampled.means(&time, 0.0), [0.0, 1.0, 4.0]);
+        // From 0.5 to 1.5: the line reaches 1, 2 and 3; its mean over both halves is 2.
+        assert!((sampled.means(&[0.5, 1.5], 0.0)[1] - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_lag_loses_nothing_of_a_constant_and_all_of_a_pulse_after_a_long_time() {
+        let time: Vec<f64> = (0..200).map(|row| 0.01 * f64::from(row)).collect();
+        let mut means: Vec<f64> = (0..200).map(|row| if row < 50 { 3.0 } else { 0.0 }).collect();
+        first_order_lag(&mut means, &time, 0.05);
+        assert!((means[49] - 3.0).abs() < 1e-12);
+        // After 1.5 s, thirty time constants, e^-30 of it is left.
+        assert!(means[199].abs() < 1e-12);
+        let lost: f64 = means[50..].iter().sum::<f64>() * 0.01;
+        // What a first-order lag gives late is its time constant times the step.
+        assert!((lost - 3.0 * 0.05).abs() < 1e-10, "{lost}");
+    }
+}

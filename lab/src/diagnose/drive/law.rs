@@ -1,0 +1,298 @@
+//! The drive's law of motion: a mass and viscous friction, and everything that can be there beside them.
+//!
+//! inertia a = effort - force - viscous v - load(x) - sign(v) dry(|v|, force) + disturbance
+
+/// What lies between motor and load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// N/m or N m/rad.
+    pub stiffness: f64,
+    /// N s/m or N m s/rad.
+    pub damping: f64,
+    /// Total play, m or rad; zero where there is none.
+    pub play: f64,
+    /// Share of the whole inertia on the load's side, 0 to 1.
+    pub load_share: f64,
+    /// Which side the encoder measures.
+    pub encoder: Side,
+}
+
+/// A side of the transmission.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Where the effort acts.
+    Motor,
+    /// Where the contact force acts.
+    Load,
+}
+
+impl Link {
+    /// Force through the link, positive when the motor pushes the load: `ahead` is the motor's lead, `rate` its rate. In the play
+    /// nothing passes.
+    #[must_use]
+    pub fn transmitted(&self, ahead: f64, rate: f64) -> f64 {
+        let stretch = ahead - ahead.clamp(-0.5 * self.play, 0.5 * self.play);
+        if self.play > 0.0 && stretch == 0.0 { 0.0 } else { self.stiffness * stretch + self.damping * rate }
+    }
+}
+
+/// A load that repeats along the way: sine sin(k x) + cosine cos(k x).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Periodic {
+    /// N or N m.
+    pub sine: f64,
+    /// N or N m.
+    pub cosine: f64,
+    /// rad/m, or periods a turn.
+    pub wavenumber: f64,
+}
+
+impl Periodic {
+    fn at(&self, position: f64) -> f64 {
+        let (sine, cosine) = (self.wavenumber * position).sin_cos();
+        self.sine * sine + self.cosine * cosine
+    }
+}
+
+/// Dry friction: level + excess exp(-(v / speed)^2) + sublinear (|v| / reference)^exponent + share |force|.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DryFriction {
+    /// N or N m.
+    pub coulomb: f64,
+    /// What creeping adds, N or N m.
+    pub stribeck_excess: f64,
+    /// Speed at which that is gone, m/s or rad/s.
+    pub stribeck_speed: f64,
+    /// Friction that grows more slowly than speed, at the reference speed, N or N m.
+    pub sublinear: f64,
+    /// Its power of the speed, 0 to 1.
+    pub sublinear_exponent: f64,
+    /// The speed at which it is `sublinear`.
+    pub reference_speed: f64,
+    /// Share of the contact force.
+    pub load_share: f64,
+}
+
+impl DryFriction {
+    /// No friction.
+    pub const NONE: Self = Self {
+        coulomb: 0.0,
+        stribeck_excess: 0.0,
+        stribeck_speed: 1.0,
+        sublinear: 0.0,
+        sublinear_exponent: 0.5,
+        reference_speed: 1.0,
+        load_share: 0.0,
+    };
+
+    /// Its size at `speed` (positive) while the contact bears `force`; at rest it holds up to that.
+    #[must_use]
+    pub fn level(&self, speed: f64, force: f64) -> f64 {
+        let mut level = self.coulomb + self.load_share * force.abs();
+        if self.stribeck_excess != 0.0 {
+            level += self.stribeck_excess * (-(speed / self.stribeck_speed).powi(2)).exp();
+        }
+        if self.sublinear != 0.0 {
+            level += self.sublinear * (speed / self.reference_speed).powf(self.sublinear_exponent);
+        }
+        level
+    }
+
+    /// Whether there is any.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        self.coulomb != 0.0 || self.stribeck_excess != 0.0 || self.sublinear != 0.0 || self.load_share != 0.0
+    }
+}
+
+/// A load by position, straight between knots, and constant beyond them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PositionCurve {
+    /// Position of the first knot.
+    pub origin: f64,
+    /// Distance of two knots.
+    pub spacing: f64,
+    /// Load at each knot, N or N m; none: no load.
+    pub knots: Vec<f64>,
+}
+
+impl PositionCurve {
+    fn at(&self, position: f64) -> f64 {
+        let (Some(first), Some(last)) = (self.knots.first(), self.knots.last()) else { return 0.0 };
+        let along = (position - self.origin) / self.spacing;
+        if along <= 0.0 {
+            return *first;
+        }
+        let knot = along as usize;
+        if knot + 1 >= self.knots.len() {
+            return *last;
+        }
+        let part = along - knot as f64;
+        self.knots[knot] * (1.0 - part) + self.knots[knot + 1] * part
+    }
+}
+
+/// The law with its values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveLaw {
+    /// Everything that moves, kg or kg m^2.
+    pub inertia: f64,
+    /// N s/m or N m s/rad.
+    pub viscous: f64,
+    /// By how much the effort acts later than it is recorded, s; may be a part of a row, early or late.
+    pub effort_delay_s: f64,
+    /// First-order lag of the effort, s.
+    pub effort_lag_s: f64,
+    /// Greatest effort either way, N or N m.
+    pub effort_limit: f64,
+    /// Dry friction, on the motor's side.
+    pub friction: DryFriction,
+    /// Constant load, N or N m.
+    pub offset: f64,
+    /// Loads that repeat along the way: gravity by angle, cogging.
+    pub periodic: Vec<Periodic>,
+    /// Load by position, of no law.
+    pub curve: PositionCurve,
+    /// What the force sensor shows too much, as a share of the force.
+    pub force_gain_error: f64,
+    /// By how much the force is recorded later than it acts, s.
+    pub force_delay_s: f64,
+    /// Mass beyond the force sensor, which the sensor feels and the drive moves, kg or kg m^2.
+    pub tool_inertia: f64,
+    /// What lies between motor and load; `None`: nothing that gives.
+    pub link: Option<Link>,
+}
+
+/// Turns of the direction that are followed within a row: more is chatter, and ends at rest.
+const TURNS_PER_ROW: usize = 3;
+
+impl DriveLaw {
+    /// Mass and viscous friction alone.
+    #[must_use]
+    pub fn nominal(inertia: f64, viscous: f64, effort_delay_s: f64) -> Self {
+        Self {
+            inertia,
+            viscous,
+            effort_delay_s,
+            effort_lag_s: 0.0,
+            effort_limit: f64::INFINITY,
+            friction: DryFriction::NONE,
+            offset: 0.0,
+            periodic: Vec::new(),
+            curve: PositionCurve::default(),
+            force_gain_error: 0.0,
+            force_delay_s: 0.0,
+            tool_inertia: 0.0,
+            link: None,
+        }
+    }
+
+    /// Load that depends on the position alone, N or N m.
+    #[must_use]
+    pub fn load(&self, position: f64) -> f64 {
+        self.offset + self.curve.at(position) + self.periodic.iter().map(|periodic| periodic.at(position)).sum::<f64>()
+    }
+
+    /// Position and velocity of one body of `inertia` after `step` seconds under a constant `push`, `force` being what the contact
+    /// bears. Between two turns of the direction the velocity is taken by the midpoint rule; a turn is met at its instant, and there
+    /// the body stays where friction can hold it.
+    #[must_use]
+    pub fn advance(&self, state: [f64; 2], push: f64, force: f64, inertia: f64, step: f64) -> [f64; 2] {
+        let [mut position, mut velocity] = state;
+        let push = push - self.load(position + 0.5 * step * velocity);
+        if !self.friction.acts() {
+            let middle = velocity + 0.5 * step * (push - self.viscous * velocity) / inertia;
+            let after = velocity + step * (push - self.viscous * middle) / inertia;
+            return [position + 0.5 * step * (velocity + after), after];
+        }
+        let mut left = step;
+        for _ in 0..TURNS_PER_ROW {
+            let Some(direction) = self.direction(velocity, push, force) else { return [position, 0.0] };
+            let rate = |speed: f64| {
+                let against = direction * self.friction.level(speed.abs(), force) + self.viscous * speed;
+                (push - against) / inertia
+            };
+            let middle = velocity + 0.5 * left * rate(velocity);
+            let acceleration = rate(if middle * direction < 0.0 { 0.0 } else { middle });
+            let after = velocity + left * acceleration;
+            if after * direction >= 0.0 {
+                return [position + 0.5 * left * (velocity + after), after];
+            }
+            if velocity == 0.0 {
+                return [position, 0.0];
+            }
+            let turn = (-velocity / acceleration).clamp(0.0, left);
+            position += 0.5 * velocity * turn;
+            left -= turn;
+            velocity = 0.0;
+        }
+        [position, 0.0]
+    }
+
+    /// Which way the body goes; `None` where friction holds it.
+    fn direction(&self, velocity: f64, push: f64, force: f64) -> Option<f64> {
+        if velocity != 0.0 {
+            return Some(velocity.signum());
+        }
+        (push.abs() > self.friction.level(0.0, force)).then(|| push.signum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rubbing(coulomb: f64) -> DriveLaw {
+        let mut law = DriveLaw::nominal(2.0, 0.0, 0.0);
+        law.friction.coulomb = coulomb;
+        law
+    }
+
+    #[test]
+    fn friction_holds_what_is_below_it_and_brakes_what_is_above() {
+        let law = rubbing(1.0);
+        assert_eq!(law.advance([0.3, 0.0], 0.99, 0.0, 2.0, 0.01), [0.3, 0.0]);
+        assert_eq!(law.advance([0.3, 0.0], -0.99, 0.0, 2.0, 0.01), [0.3, 0.0]);
+        let [_, velocity] = law.advance([0.3, 0.0], 1.5, 0.0, 2.0, 0.01);
+        assert!((velocity - 0.01 * 0.5 / 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_body_comes_to_rest_at_the_instant_of_physics_and_stays() {
+        // 1 N against 2 kg at 2 mm/s: rest after 4 ms and 4 um, the rest of the step does nothing.
+        let [position, velocity] = rubbing(1.0).advance([0.0, 2e-3], 0.0, 0.0, 2.0, 0.01);
+        assert_eq!(velocity, 0.0);
+        assert!((position - 4e-6).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_turn_within_a_step_goes_on_the_other_way_with_friction_against_it() {
+        // -3 N: to rest against 4 N (friction helps) in 1 ms, then back with 2 N for 9 ms.
+        let [_, velocity] = rubbing(1.0).advance([0.0, 2e-3], -3.0, 0.0, 2.0, 0.01);
+        assert!((velocity + 9e-3 * 2.0 / 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn viscous_friction_alone_decays_by_the_exponential_to_the_third_order() {
+        let law = DriveLaw::nominal(0.8, 4.0, 0.0);
+        let [position, velocity] = law.advance([0.0, 1.0], 0.0, 0.0, 0.8, 1e-3);
+        let decay = (-5e-3f64).exp();
+        // The midpoint rule errs by (b h / m)^3 / 6 a step.
+        assert!((velocity - decay).abs() < 1.1 * 5e-3f64.powi(3) / 6.0);
+        assert!((position - (1.0 - decay) / 5.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn nothing_passes_a_play_and_beyond_it_a_spring_from_its_end() {
+        let link = Link { stiffness: 100.0, damping: 2.0, play: 0.02, load_share: 0.5, encoder: Side::Motor };
+        assert_eq!(link.transmitted(0.009, 5.0), 0.0);
+        assert!((link.transmitted(0.03, 1.0) - (100.0 * 0.02 + 2.0)).abs() < 1e-12);
+        assert!((link.transmitted(-0.03, 0.0) + 100.0 * 0.02).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_curve_is_straight_between_knots_and_constant_beyond() {
+        let curve = PositionCurve { origin: 1.0, spacing: 0.5, knots: vec![2.0, 4.0, 3.0] };
+        assert_eq!([0.0, 1.25, 1.5, 1.75, 9.0].map(|x| curve.at(x)), [2.0, 3.0, 4.0, 3.5, 3.0]);
+    }
+}

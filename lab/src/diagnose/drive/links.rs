@@ -1,0 +1,115 @@
+//! Two bodies: the search for what gives, or plays, between motor and load.
+//!
+//! The likelihood has many maxima there, so it starts from several links and gaps, on a short stretch first.
+
+use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use super::fit::{Data, Fit, search_noise, search_values};
+use super::law::Side;
+use super::model::index;
+use super::term::{Scales, Term};
+use super::trial::DriveTrial;
+
+/// Rows of the stretch on which starts are compared.
+const STRETCH_ROWS: usize = 5000;
+
+/// Frequencies of the link under all of the inertia that are tried, Hz; only those that the rows can follow.
+const COMPLIANCE_HZ: [f64; 3] = [6.0, 15.0, 40.0];
+const PLAY_HZ: f64 = 60.0;
+const FASTEST_PER_ROW: f64 = 0.3;
+
+/// Gaps that are tried, in steps of the encoder.
+const GAPS: [f64; 3] = [2.0, 6.0, 20.0];
+
+/// Starts that are followed to their end, and the turns that takes.
+const FOLLOWED: usize = 4;
+const TURNS: usize = 4;
+const STEPS: usize = 6;
+
+/// The best weak link and the best play beside the terms of `base`, still to be fitted in full.
+#[must_use]
+pub fn found(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>], sides: &[Side]) -> Vec<Fit> {
+    let trials = [liveliest(data, disturbance)];
+    let short = Data { trials: &trials, ..*data };
+    let mut fits: Vec<Fit> = starts(base, sides).into_par_iter().map(|start| turn(&short, start)).collect();
+    fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
+    fits.truncate(2 * FOLLOWED);
+    let followed = |mut fit: Fit| {
+        for _ in 1..TURNS {
+            let before = fit.log_likelihood;
+            fit = turn(&short, fit);
+            if fit.log_likelihood - before < 1.0 {
+                break;
+            }
+        }
+        fit
+    };
+    let mut fits: Vec<Fit> = fits.into_par_iter().map(followed).collect();
+    fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
+    let mut best: Vec<Fit> = Vec::new();
+    for fit in fits {
+        let names = fit.model.names();
+        if !fit.model.is_at_end(&fit.values) && best.iter().all(|other| other.model.names() != names) {
+            best.push(fit);
+        }
+    }
+    best
+}
+
+fn turn(data: &Data<'_>, mut fit: Fit) -> Fit {
+    fit.ended = search_values(data, &fit.model, &mut fit.values, &fit.noise, STEPS);
+    fit.log_likelihood = search_noise(data, &fit.model, &fit.values, &mut fit.noise);
+    fit
+}
+
+/// Every link and play to begin with.
+fn starts(base: &Fit, sides: &[Side]) -> Vec<Fit> {
+    let scales: &Scales = &base.model.scales;
+    let inertia = base.values[index::INERTIA];
+    // Of a link under two equal halves.
+    let link = |frequency_hz: f64| {
+        let swing = TAU * frequency_hz;
+        vec![0.25 * inertia * swing * swing, 0.025 * inertia * swing, 0.5]
+    };
+    let mut all = Vec::new();
+    for side in sides {
+        for hz in COMPLIANCE_HZ {
+            all.push((Term::Compliance(*side), hz, None));
+        }
+        for gap in GAPS {
+            all.push((Term::Play(*side), PLAY_HZ, Some(gap * scales.resolution)));
+        }
+    }
+    let is_slow_enough = |hz: &f64| *hz * scales.period_s < FASTEST_PER_ROW;
+    all.into_iter()
+        .filter(|(_, hz, _)| is_slow_enough(hz))
+        .map(|(term, hz, gap)| {
+            let own = link(hz).into_iter().chain(gap);
+            let mut fit = base.clone();
+            fit.values.extend(own);
+            fit.model.terms.push(term);
+            fit
+        })
+        .collect()
+}
+
+/// The stretch of a trial in which the disturbance is largest.
+fn liveliest(data: &Data<'_>, disturbance: &[Vec<f64>]) -> DriveTrial {
+    let mut best = (f64::NEG_INFINITY, 0, 0..0);
+    for (at, (trial, force)) in data.trials.iter().zip(disturbance).enumerate() {
+        let rows = trial.len().min(STRETCH_ROWS);
+        let mut start = 0;
+        while start + rows <= trial.len() {
+            let stretch = start..start + rows;
+            let power = force[stretch.clone()].iter().map(|force| force * force).sum::<f64>();
+            if power > best.0 {
+                best = (power, at, stretch);
+            }
+            start += rows.div_ceil(2).max(1);
+        }
+    }
+    let (_, at, stretch) = best;
+    data.trials[at].slice(stretch)
+}

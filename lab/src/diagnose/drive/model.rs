@@ -1,0 +1,99 @@
+//! A model of the drive: its terms, and all values in one vector.
+
+use super::law::DriveLaw;
+use super::term::{Range, Scales, Term};
+
+/// Terms beyond the nominal ones; the values are inertia, viscous friction, delay of the effort, then those of each term.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// In the order of their values.
+    pub terms: Vec<Term>,
+    /// Sizes that ranges are stated in.
+    pub scales: Scales,
+}
+
+/// Where the nominal values stand.
+pub mod index {
+    /// kg or kg m^2.
+    pub const INERTIA: usize = 0;
+    /// N s/m or N m s/rad.
+    pub const VISCOUS: usize = 1;
+    /// s
+    pub const DELAY: usize = 2;
+}
+
+/// How many values are nominal.
+pub const NOMINAL: usize = 3;
+
+/// Factor between the rig file's inertia and one that is still believed to be this drive's.
+const INERTIA_FACTOR: f64 = 50.0;
+
+/// Latest effort that counts as a late clock, in rows and in seconds: a fieldbus takes some cycles.
+const LATEST_ROWS: f64 = 20.0;
+const LATEST_S: f64 = 0.02;
+
+impl Model {
+    /// The ranges of all values.
+    #[must_use]
+    pub fn ranges(&self) -> Vec<Range> {
+        let scales = &self.scales;
+        let viscous = (scales.effort / scales.speed).max(scales.viscous);
+        let latest = (LATEST_ROWS * scales.period_s).max(LATEST_S).min(3.0 * LATEST_ROWS * scales.period_s);
+        let mut ranges = vec![
+            Range::relative(scales.inertia / INERTIA_FACTOR, scales.inertia * INERTIA_FACTOR),
+            Range::absolute(0.0, f64::INFINITY, 0.1 * viscous),
+            Range::absolute(-scales.period_s, latest, 0.3 * scales.period_s),
+        ];
+        self.terms.iter().for_each(|term| ranges.extend(term.ranges(scales)));
+        ranges
+    }
+
+    /// Where the values of term `at` stand.
+    #[must_use]
+    pub fn values_of(&self, at: usize) -> std::ops::Range<usize> {
+        let count = |term: &Term| term.ranges(&self.scales).len();
+        let start = NOMINAL + self.terms[..at].iter().map(count).sum::<usize>();
+        start..start + count(&self.terms[at])
+    }
+
+    /// The law with `values`.
+    #[must_use]
+    pub fn law(&self, values: &[f64]) -> DriveLaw {
+        let mut law = DriveLaw::nominal(values[index::INERTIA], values[index::VISCOUS], values[index::DELAY]);
+        let mut rest = &values[NOMINAL..];
+        for term in &self.terms {
+            let (own, others) = rest.split_at(term.ranges(&self.scales).len());
+            term.apply(own, &self.scales, &mut law);
+            rest = others;
+        }
+        law
+    }
+
+    /// Whether a telling value of a term ended where its search did.
+    #[must_use]
+    pub fn is_at_end(&self, values: &[f64]) -> bool {
+        (0..self.terms.len()).any(|at| self.terms[at].is_at_end(&values[self.values_of(at)], &self.scales))
+    }
+
+    /// The same with one term more.
+    #[must_use]
+    pub fn with(&self, term: Term) -> Self {
+        let mut more = self.clone();
+        more.terms.push(term);
+        more
+    }
+
+    /// The names of its terms, sorted: the same for sets of terms that are told alike.
+    #[must_use]
+    pub fn names(&self) -> Vec<&'static str> {
+        let mut names: Vec<&'static str> = self.terms.iter().map(Term::name).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// Whether a term of that name is in it.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.terms.iter().any(|term| term.name() == name)
+    }
+}

@@ -1,0 +1,404 @@
+//! What the recordings say of a drive: the law, its evidence, what else would do, and what is left.
+
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha12Rng;
+use rand_distr::{Distribution, StandardNormal};
+use statrs::distribution::{ChiSquared, ContinuousCDF as _};
+
+use super::criteria::{
+    CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_VUONG, MOST_LEFT, UNKNOWN_PART_OF_EFFORT,
+};
+use super::filter::innovations;
+use super::fit::{Data, Effort, Fit, fit};
+use super::held_out::{Folds, HeldOut, missing_force, rms};
+use super::interval::intervals;
+use super::law::{DriveLaw, Side};
+use super::model::{Model, index};
+use super::noise::{Noise, white_variance};
+use super::selection::{Chosen, Search};
+use super::term::{Scales, Term};
+use super::trial::DriveTrial;
+
+/// What a rig file says of a drive.
+#[derive(Debug, Clone, Copy)]
+pub struct NominalDrive {
+    /// kg or kg m^2.
+    pub inertia: f64,
+    /// N s/m or N m s/rad.
+    pub viscous: f64,
+    /// Whether positions are angles.
+    pub is_rotary: bool,
+    /// On which side of the transmission the encoder sits, where that is known.
+    pub encoder: Option<Side>,
+    /// Step of the encoder, m or rad; zero where it is not known.
+    pub resolution: f64,
+}
+
+/// A named term of the drive.
+#[derive(Debug, Clone)]
+pub struct NamedTerm {
+    /// Its place among the terms of the model.
+    pub at: usize,
+    /// Share of the held-out power that it takes, beside the other terms.
+    pub held_out_share: f64,
+    /// Likelihood-ratio test of it, Bonferroni over all terms tried.
+    pub p_value: f64,
+    /// What is missing without it, N or N m in root mean square on held-out rows.
+    pub without: f64,
+}
+
+/// A set of terms that the recordings do not tell from the answer.
+#[derive(Debug, Clone)]
+pub struct Alternative {
+    /// Its terms.
+    pub names: Vec<&'static str>,
+    /// Share of the held-out mismatch that it takes.
+    pub held_out_share: f64,
+}
+
+/// A term tried alone.
+#[derive(Debug, Clone, Copy)]
+pub struct Single {
+    /// Its name.
+    pub name: &'static str,
+    /// Share of the unexplained power that it takes, rows of its fit.
+    pub share: f64,
+    /// Likelihood-ratio test of it, for itself.
+    pub p_value: f64,
+}
+
+/// How it stands with the drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Finding {
+    /// As good as the sensors.
+    NoMismatch,
+    /// Only values are off.
+    Parameters,
+    /// Named.
+    Explained,
+    /// Named, and something is left.
+    PartlyExplained,
+    /// Something is there that nothing explains.
+    Unknown,
+}
+
+/// Everything found of a drive.
+pub struct Outcome {
+    /// The trials, as they were looked at.
+    pub trials: Vec<DriveTrial>,
+    /// How it stands.
+    pub finding: Finding,
+    /// The refitted nominal law.
+    pub nominal: Fit,
+    /// The law with its terms.
+    pub chosen: Fit,
+    /// 95 % interval of each of its values.
+    pub intervals: Vec<[f64; 2]>,
+    /// The terms that are named.
+    pub named: Vec<NamedTerm>,
+    /// What else would do.
+    pub alternatives: Vec<Alternative>,
+    /// Every term tried alone, the strongest first.
+    pub singles: Vec<Single>,
+    /// Missing force by the rig file as given, by refitted values, and with the named terms, a column a trial.
+    pub missing: [Vec<Vec<f64>>; 3],
+    /// What the sensors alone would show as missing force, N or N m in root mean square.
+    pub expected_noise: f64,
+    /// Up to which frequency the missing force is seen, Hz.
+    pub band_hz: f64,
+}
+
+/// Fewest encoder rows that a drive is identified from.
+const FEWEST_ROWS: usize = 200;
+
+/// Rows that are looked at of all trials together: more are thinned, with the effort's mean over each interval exact.
+const MOST_ROWS: usize = 45_000;
+
+/// Trials of a recording thinned to what the search can bear.
+#[must_use]
+pub fn thinning(rows: usize) -> usize {
+    rows.div_ceil(MOST_ROWS).max(1)
+}
+
+/// Identifies the drive of `trials`; `None` where they show no motion or are too short.
+#[must_use]
+pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
+    let scales = scales(&trials, rig)?;
+    let encoder_variance = encoder_variance(&trials, &scales);
+    let data = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
+    say("the drive: nominal values");
+    let nominal = nominal_fit(&data, scales, encoder_variance)?;
+    let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
+    let band_hz = crossing.clamp(LOWEST_BAND_HZ.min(0.1 / scales.period_s), 0.4 / scales.period_s);
+    let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
+    let search = Search { data, scales, nominal, band_hz, sides };
+    let chosen = search.run(say);
+    say("the drive: what is left");
+    let mut outcome = judged(&search, chosen, seed);
+    outcome.trials = trials.clone();
+    Some(outcome)
+}
+
+/// Band in which a missing force is looked for even where the nominal law leaves nothing, Hz.
+const LOWEST_BAND_HZ: f64 = 5.0;
+
+fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
+    let rows: usize = trials.iter().map(DriveTrial::len).sum();
+    let largest = |of: &dyn Fn(&DriveTrial) -> f64| trials.iter().map(of).fold(0.0, f64::max);
+    let effort = largest(&|trial| deviation(&trial.effort));
+    let speed = largest(&|trial| usual_speed(trial));
+    let position = || trials.iter().flat_map(|trial| trial.position.iter());
+    let lowest = position().copied().fold(f64::INFINITY, f64::min);
+    let travel = position().copied().fold(f64::NEG_INFINITY, f64::max) - lowest;
+    let moves = rows >= FEWEST_ROWS && effort > 0.0 && speed > 0.0 && travel > 0.0;
+    moves.then(|| Scales {
+        effort,
+        peak_effort: largest(&|trial| trial.effort.iter().fold(0.0, |peak: f64, effort| peak.max(effort.abs()))),
+        speed,
+        travel,
+        lowest,
+        period_s: trials[0].period_s,
+        duration_s: largest(&DriveTrial::duration_s),
+        inertia: rig.inertia,
+        viscous: rig.viscous,
+        resolution: rig.resolution.max(1e-6 * travel),
+        is_rotary: rig.is_rotary,
+    })
+}
+
+/// Greatest mean speed over some rows.
+fn usual_speed(trial: &DriveTrial) -> f64 {
+    const ROWS: usize = 8;
+    let spans = trial.position.windows(ROWS + 1).zip(trial.time.windows(ROWS + 1));
+    spans.map(|(x, t)| ((x[ROWS] - x[0]) / (t[ROWS] - t[0])).abs()).fold(0.0, f64::max)
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// Of the quietest trial, and no less than a third of what rounding to the encoder's step leaves.
+fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
+    let white = trials.iter().map(|trial| white_variance(&trial.position)).fold(f64::INFINITY, f64::min);
+    white.max(0.3 * scales.resolution.powi(2) / 12.0)
+}
+
+/// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
+const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
+
+fn nominal_fit(data: &Data<'_>, scales: Scales, encoder_variance: f64) -> Option<Fit> {
+    let model = Model { terms: Vec::new(), scales };
+    let density = 1e-2 * scales.effort.powi(2) * scales.period_s;
+    let noise = Noise { ln_disturbance: density.ln(), ln_encoder: encoder_variance.ln() };
+    let fits = DELAY_STARTS.map(|rows| {
+        let start = [scales.inertia, scales.viscous, rows * scales.period_s];
+        fit(data, &model, &start, noise, Effort::FULL)
+    });
+    let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
+    best.log_likelihood.is_finite().then_some(best)
+}
+
+/// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.
+const LEAST_HELD_OUT_SHARE: f64 = 0.12;
+
+fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
+    let data = &search.data;
+    let folds = Folds::of(data.trials);
+    let common = search.nominal.noise.with_crossing(
+        search.band_hz,
+        search.scales.period_s,
+        search.nominal.values[index::INERTIA],
+    );
+    let given = missing_force(data, &as_given(search), &common);
+    let refitted = folds.held_out(data, &search.nominal, &common);
+    let (fit, improved, named) = believed(search, &folds, &common, chosen.fit.clone());
+    let expected_noise = expected_noise(search, &fit, &common, seed);
+    let intervals = intervals(data, &fit, &improved.values);
+    let finding = finding(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], expected_noise);
+    let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
+    Outcome {
+        trials: Vec::new(),
+        finding,
+        nominal: search.nominal.clone(),
+        intervals,
+        named,
+        alternatives,
+        singles: singles(search, &chosen),
+        missing: [given, refitted.missing, improved.missing],
+        expected_noise,
+        band_hz: search.band_hz,
+        chosen: fit,
+    }
+}
+
+/// The rig file's values with the effort's delay as it was found: nobody states a part of a row.
+fn as_given(search: &Search<'_>) -> Fit {
+    let mut given = search.nominal.clone();
+    given.values[index::INERTIA] = search.scales.inertia;
+    given.values[index::VISCOUS] = search.scales.viscous;
+    given
+}
+
+/// The terms that unseen rows confirm, with what each takes of them.
+fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
+    loop {
+        let held = folds.held_out(&search.data, &fit, common);
+        let with = rms(&held.missing);
+        let without: Vec<(Fit, f64)> = (0..fit.model.terms.len())
+            .map(|at| {
+                let less = without(search, &fit, at);
+                let left = rms(&folds.held_out(&search.data, &less, common).missing);
+                (less, left)
+            })
+            .collect();
+        let share = |left: f64| 1.0 - (with / left.max(f64::MIN_POSITIVE)).powi(2);
+        let needless = (0..without.len()).filter(|at| share(without[*at].1) < LEAST_HELD_OUT_SHARE);
+        if let Some(at) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
+            fit = without[at].0.clone();
+            continue;
+        }
+        let tried = 15.0;
+        let named = without.iter().enumerate().map(|(at, (less, left))| NamedTerm {
+            at,
+            held_out_share: share(*left).clamp(0.0, 1.0),
+            p_value: (tried * likelihood_ratio(&fit, less)).min(1.0),
+            without: *left,
+        });
+        let named = named.collect();
+        return (fit, held, named);
+    }
+}
+
+/// `fit` without term `at`, refitted; terms that cannot stand without it go with it.
+fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
+    let mut less = fit.clone();
+    less.values.drain(fit.model.values_of(at));
+    less.model.terms.remove(at);
+    if less.model.terms.is_empty() { search.nominal.clone() } else { search.polished(&less) }
+}
+
+/// Probability of as large a likelihood ratio where the smaller model is true (Wilks).
+fn likelihood_ratio(more: &Fit, less: &Fit) -> f64 {
+    let values = more.values.len().saturating_sub(less.values.len()).max(1) as f64;
+    let ratio = 2.0 * (more.log_likelihood - less.log_likelihood).max(0.0);
+    ChiSquared::new(values).map_or(1.0, |chi| chi.sf(ratio))
+}
+
+fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
+    let before = search.unexplained(&search.nominal).powi(2);
+    let mut all: Vec<Single> = Vec::new();
+    for fit in &chosen.singles {
+        let Some(term) = fit.model.terms.first() else { continue };
+        if all.iter().any(|single| single.name == term.name()) {
+            continue;
+        }
+        let share = 1.0 - search.unexplained(fit).powi(2) / before.max(f64::MIN_POSITIVE);
+        all.push(Single {
+            name: term.name(),
+            share: share.clamp(-1.0, 1.0),
+            p_value: likelihood_ratio(fit, &search.nominal),
+        });
+    }
+    all.sort_by(|a, b| b.share.total_cmp(&a.share));
+    all
+}
+
+/// Alternatives that are told.
+const MOST_ALTERNATIVES: usize = 3;
+
+/// Sets that were fitted in full and are neither refused by the likelihood nor told like the answer.
+fn alternatives(
+    search: &Search<'_>,
+    folds: &Folds,
+    common: &Noise,
+    fit: &Fit,
+    chosen: &Chosen,
+    refitted: &HeldOut,
+) -> Vec<Alternative> {
+    if fit.model.terms.is_empty() {
+        return Vec::new();
+    }
+    let before = rms(&refitted.missing);
+    let is_open = |other: &&Fit| {
+        other.model.names() != fit.model.names()
+            && other.model.terms.len() <= fit.model.terms.len()
+            && (fit.log_likelihood - other.log_likelihood < LEAST_GAIN || search.worth(fit, other).vuong < LEAST_VUONG)
+    };
+    let open = chosen.sets.iter().filter(is_open).take(MOST_ALTERNATIVES);
+    open.map(|other| {
+        let left = rms(&folds.held_out(&search.data, other, common).missing);
+        let share = 1.0 - (left / before.max(f64::MIN_POSITIVE)).powi(2);
+        Alternative { names: other.model.names(), held_out_share: share.clamp(0.0, 1.0) }
+    })
+    .collect()
+}
+
+/// Times the sensors' own noise from which a missing force is one.
+const OVER_NOISE: f64 = 1.5;
+
+/// Factor by which refitted values have to lessen what is missing before they are told as wrong.
+const VALUES_MATTER: f64 = 1.15;
+
+fn finding(search: &Search<'_>, fit: &Fit, [given, refitted, improved]: [f64; 3], noise: f64) -> Finding {
+    let above = |rms: f64| (rms * rms - noise * noise).max(0.0).sqrt();
+    let effort = search.scales.effort;
+    if fit.model.terms.is_empty() {
+        let is_unknown = refitted > OVER_NOISE * noise && above(refitted) > UNKNOWN_PART_OF_EFFORT * effort;
+        return match (is_unknown, given > VALUES_MATTER * refitted && above(given) > LEAST_PART_OF_EFFORT * effort) {
+            (true, _) => Finding::Unknown,
+            (false, true) => Finding::Parameters,
+            (false, false) => Finding::NoMismatch,
+        };
+    }
+    let is_left = improved > OVER_NOISE * noise
+        && (above(improved) > MOST_LEFT * above(refitted) || a_curve_does_better(search, fit));
+    if is_left { Finding::PartlyExplained } else { Finding::Explained }
+}
+
+/// Knots of the free curve over position.
+const CURVE_KNOTS: usize = 24;
+
+/// Whether a load by position of no law takes most of what the terms of `fit` leave, where that is much: then they are not all of it.
+fn a_curve_does_better(search: &Search<'_>, fit: &Fit) -> bool {
+    let left = search.unexplained(fit);
+    if fit.model.terms.iter().any(Term::is_link) || left < MOST_LEFT * 0.5 * search.unexplained(&search.nominal) {
+        return false;
+    }
+    let scales = &search.scales;
+    let curve = Term::Curve {
+        origin: scales.lowest,
+        spacing: scales.travel / (CURVE_KNOTS - 1) as f64,
+        count: CURVE_KNOTS,
+    };
+    let mut start = fit.clone();
+    start.model.terms.push(curve);
+    start.values.extend([0.0; CURVE_KNOTS]);
+    search.unexplained(&search.polished(&start)) < CURVE_PART * left
+}
+
+/// Missing force that the sensors' noise alone would show: the encoder's and the force sensor's, drawn and passed through the same
+/// filter and smoother.
+fn expected_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> f64 {
+    let mut rng = ChaCha12Rng::seed_from_u64(seed);
+    let law = DriveLaw::nominal(fit.values[index::INERTIA], fit.values[index::VISCOUS], 0.0);
+    let mut drawn = |deviation: f64, count: usize| -> Vec<f64> {
+        (0..count).map(|_| deviation * Distribution::<f64>::sample(&StandardNormal, &mut rng)).collect()
+    };
+    let columns: Vec<Vec<f64>> = search
+        .data
+        .trials
+        .iter()
+        .map(|trial| {
+            let mut noise = trial.clone();
+            noise.position = drawn(fit.noise.encoder().sqrt(), trial.len());
+            noise.effort.fill(0.0);
+            if let Some(force) = &mut noise.force {
+                *force = drawn(white_variance(force).sqrt(), force.len());
+            }
+            innovations(&noise, &law, common, true).disturbance
+        })
+        .collect();
+    rms(&columns)
+}

@@ -1,0 +1,238 @@
+//! Which terms the recordings ask for: sets grown from the best few, and pruned.
+
+use super::candidates::{one_body, simpler, tried};
+use super::criteria::{
+    BLOCK_ROWS, BLOCK_S, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_EFFORT, LEAST_RIPPLE_SHARE,
+    LEAST_SHARE, LEAST_VUONG, LINK_PART, NEGLIGIBLE_PART,
+};
+use super::filter::innovations;
+use super::fit::{Data, Effort, Fit, fit};
+use super::law::Side;
+use super::links;
+use super::term::{Scales, Term};
+
+/// What a search works on.
+pub struct Search<'a> {
+    /// The trials.
+    pub data: Data<'a>,
+    /// Sizes of the recordings.
+    pub scales: Scales,
+    /// The nominal law, refitted.
+    pub nominal: Fit,
+    /// Band in which unexplained forces are compared, Hz.
+    pub band_hz: f64,
+    /// Sides of a transmission on which the encoder may sit.
+    pub sides: Vec<Side>,
+}
+
+/// What was chosen, and what was tried on the way.
+pub struct Chosen {
+    /// The model with its terms.
+    pub fit: Fit,
+    /// Every single term beside the nominal law, the most likely first.
+    pub singles: Vec<Fit>,
+    /// Every set that was fitted in full.
+    pub sets: Vec<Fit>,
+}
+
+/// What a larger model has over a smaller one.
+#[derive(Debug, Clone, Copy)]
+pub struct Worth {
+    /// Log likelihood, nats.
+    pub gain: f64,
+    /// Share of the unexplained power that it takes.
+    pub share: f64,
+    /// What it takes, in root mean square, over all that the nominal law leaves.
+    pub part_of_all: f64,
+    /// Vuong's statistic over blocks.
+    pub vuong: f64,
+}
+
+/// Sets that each round grows from.
+const BEAM: usize = 2;
+
+/// Terms of a round that are fitted in full.
+const POLISHED: usize = 5;
+
+/// Sets of a round that are judged.
+const JUDGED: usize = 6;
+
+/// Terms at most.
+const MOST_TERMS: usize = 4;
+
+/// Links are looked for beside this many models.
+const LINK_SEARCHES: usize = 2;
+
+impl Search<'_> {
+    /// Unexplained force of a fit in the common band, N or N m.
+    #[must_use]
+    pub fn unexplained(&self, fit: &Fit) -> f64 {
+        fit.noise.disturbance_rms(self.band_hz)
+    }
+
+    /// What `more` has over `less`.
+    #[must_use]
+    pub fn worth(&self, more: &Fit, less: &Fit) -> Worth {
+        let power = |fit: &Fit| self.unexplained(fit).powi(2);
+        let taken = (power(less) - power(more)).max(0.0);
+        let all = self.unexplained(&self.nominal).min(self.scales.effort);
+        let block = ((BLOCK_S / self.scales.period_s) as usize).max(BLOCK_ROWS);
+        let rows = [more, less].map(|fit| self.data.row_log_likelihoods(fit));
+        Worth {
+            gain: more.log_likelihood - less.log_likelihood,
+            share: taken / power(less).max(f64::MIN_POSITIVE),
+            part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),
+            vuong: vuong(&rows[0], &rows[1], block),
+        }
+    }
+
+    /// Whether `more` is worth its terms.
+    #[must_use]
+    pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
+        let values = more.values.len().saturating_sub(less.values.len()).max(1);
+        let ripples = |fit: &Fit| fit.model.terms.iter().filter(|term| **term == Term::Cogging).count();
+        let least_share = if ripples(more) > ripples(less) { LEAST_RIPPLE_SHARE } else { LEAST_SHARE };
+        let worth = self.worth(more, less);
+        worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
+            && worth.share > least_share
+            && worth.part_of_all > LEAST_PART_OF_ALL
+            && worth.vuong > LEAST_VUONG
+    }
+
+    /// Smoothed disturbance of `fit`, a column a trial.
+    #[must_use]
+    pub fn disturbance(&self, fit: &Fit) -> Vec<Vec<f64>> {
+        let law = fit.model.law(&fit.values);
+        let smoothed = |trial| innovations(trial, &law, &fit.noise, true).disturbance;
+        self.data.trials.iter().map(smoothed).collect()
+    }
+
+    /// Runs the search, telling `say` how it goes.
+    #[must_use]
+    pub fn run(&self, say: &dyn Fn(&str)) -> Chosen {
+        let mut best = self.nominal.clone();
+        let mut beam = vec![best.clone()];
+        let (mut singles, mut sets) = (Vec::new(), Vec::new());
+        let mut link_searches = 0;
+        let is_negligible = self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort;
+        for round in 0..if is_negligible { 0 } else { MOST_TERMS } {
+            say(&format!("the drive: {} terms and one more", round));
+            let mut grown: Vec<Fit> = Vec::new();
+            for base in &beam {
+                let candidates = one_body(&self.data, base, &self.disturbance(base));
+                let mut quick = tried(&self.data, base, candidates);
+                if round == 0 {
+                    singles.clone_from(&quick);
+                }
+                quick.truncate(POLISHED);
+                grown.extend(quick.iter().map(|quick| self.polished(quick)));
+            }
+            let unexplained = |fit: &Fit| self.unexplained(fit);
+            let least = grown.iter().filter(|fit| !is_at_end(fit)).map(unexplained).fold(unexplained(&best), f64::min);
+            let is_rigid = !best.model.terms.iter().any(Term::is_link);
+            if is_rigid && link_searches < LINK_SEARCHES && least > LINK_PART * unexplained(&self.nominal) {
+                say("the drive: two bodies");
+                link_searches += 1;
+                let found = links::found(&self.data, &best, &self.disturbance(&best), &self.sides);
+                grown.extend(found.iter().map(|fit| self.polished(fit)));
+            }
+            grown.retain(|fit| !is_at_end(fit));
+            let grown = distinct(grown);
+            sets.extend(grown.iter().cloned());
+            let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE * fit.values.len() as f64;
+            let worthy = grown.iter().filter(|fit| self.is_worth(fit, &best));
+            let Some(top) = worthy.max_by(|a, b| price(a).total_cmp(&price(b))) else { break };
+            best = top.clone();
+            beam = grown.into_iter().take(BEAM).collect();
+            if unexplained(&best) < NEGLIGIBLE_PART * unexplained(&self.nominal) {
+                break;
+            }
+        }
+        say("the drive: without each term");
+        let fit = self.pruned(best);
+        Chosen { fit, singles, sets: distinct_all(sets) }
+    }
+
+    /// `start` fitted in full.
+    #[must_use]
+    pub fn polished(&self, start: &Fit) -> Fit {
+        let effort = if start.model.terms.iter().any(Term::is_link) { Effort::LINKED } else { Effort::FULL };
+        fit(&self.data, &start.model, &start.values, start.noise, effort)
+    }
+
+    /// `best` without the terms, or the refinements of a law, that are not worth having beside the others.
+    fn pruned(&self, mut best: Fit) -> Fit {
+        'again: loop {
+            for at in (0..best.model.terms.len()).rev() {
+                for (model, values) in simpler(&best, at) {
+                    let less = if model.terms.is_empty() {
+                        self.nominal.clone()
+                    } else {
+                        self.polished(&Fit { model, values, ..best.clone() })
+                    };
+                    if !self.is_worth(&best, &less) {
+                        best = less;
+                        continue 'again;
+                    }
+                }
+            }
+            return best;
+        }
+    }
+}
+
+fn is_at_end(fit: &Fit) -> bool {
+    fit.model.is_at_end(&fit.values)
+}
+
+/// The likeliest few, each set of names once.
+fn distinct(fits: Vec<Fit>) -> Vec<Fit> {
+    let mut kept = distinct_all(fits);
+    kept.truncate(JUDGED);
+    kept
+}
+
+fn distinct_all(mut fits: Vec<Fit>) -> Vec<Fit> {
+    fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
+    let mut kept: Vec<Fit> = Vec::new();
+    for fit in fits {
+        let names = fit.model.names();
+        if kept.iter().all(|other| other.model.names() != names) {
+            kept.push(fit);
+        }
+    }
+    kept
+}
+
+/// Mean difference of two models' likelihoods over its deviation, rows taken together in blocks.
+#[must_use]
+pub fn vuong(more: &[f64], less: &[f64], block: usize) -> f64 {
+    let blocks: Vec<f64> = more
+        .chunks_exact(block)
+        .zip(less.chunks_exact(block))
+        .map(|(more, less)| more.iter().zip(less).map(|(more, less)| more - less).sum())
+        .collect();
+    let count = blocks.len() as f64;
+    if count < 2.0 {
+        return 0.0;
+    }
+    let mean = blocks.iter().sum::<f64>() / count;
+    let variance = blocks.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    if variance > 0.0 { mean * (count / variance).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gain_in_one_block_alone_is_no_gain_throughout() {
+        let less = vec![0.0; 400];
+        let mut once = less.clone();
+        once[50..60].fill(30.0);
+        assert!(vuong(&once, &less, 20) < 1.1);
+        let throughout: Vec<f64> = (0..400).map(|row| 0.7 + 0.1 * f64::from(row % 3)).collect();
+        assert!(vuong(&throughout, &less, 20) > 30.0);
+        assert_eq!(vuong(&once[..30], &less[..30], 20), 0.0);
+    }
+}

@@ -1,0 +1,282 @@
+//! What a model of the drive can hold beyond mass and viscous friction, and the values that each term brings.
+
+use super::law::{DriveLaw, Link, Periodic, PositionCurve, Side};
+
+/// A term with its law.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Term {
+    /// Dry friction of one level.
+    Coulomb,
+    /// Dry friction that is larger when creeping (Gaussian decay).
+    Stribeck,
+    /// Friction that grows with a power of the speed below one, beside dry friction.
+    Sublinear,
+    /// Friction in proportion to the contact force.
+    LoadFriction,
+    /// A constant load.
+    ConstantLoad,
+    /// A load by angle or position with one slow period: gravity on an arm.
+    AngleLoad,
+    /// A load that repeats along the way many times.
+    Cogging,
+    /// Effort that ends at a limit.
+    EffortLimit,
+    /// Effort that follows its command by a first-order lag.
+    EffortLag,
+    /// A spring and damper between motor and load; the encoder sits on one side.
+    Compliance(Side),
+    /// The same behind a play.
+    Play(Side),
+    /// A force sensor that is off by a factor.
+    ForceGain,
+    /// A force that is recorded late.
+    ForceDelay,
+    /// A mass beyond the force sensor.
+    ToolInertia,
+    /// A load by position of no law, by `count` knots.
+    Curve {
+        /// First knot, m or rad.
+        origin: f64,
+        /// Distance of two knots, m or rad.
+        spacing: f64,
+        /// How many.
+        count: usize,
+    },
+}
+
+/// The range of a value in a search, and how a step along it is counted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Least value.
+    pub low: f64,
+    /// Greatest value.
+    pub high: f64,
+    /// A step of one: a factor of e, or so much.
+    pub step: Step,
+}
+
+/// How a step along a value is counted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// By factors.
+    Relative,
+    /// By this much.
+    Absolute(f64),
+}
+
+impl Range {
+    /// Between two positive values, stepped by factors.
+    #[must_use]
+    pub const fn relative(low: f64, high: f64) -> Self {
+        Self { low, high, step: Step::Relative }
+    }
+
+    /// Between two values, stepped by `size`.
+    #[must_use]
+    pub const fn absolute(low: f64, high: f64, size: f64) -> Self {
+        Self { low, high, step: Step::Absolute(size) }
+    }
+
+    /// `value` after `steps`, not bounded.
+    #[must_use]
+    pub fn moved(&self, value: f64, steps: f64) -> f64 {
+        match self.step {
+            Step::Relative => value * steps.exp(),
+            Step::Absolute(size) => value + steps * size,
+        }
+    }
+
+    /// d value / d steps.
+    #[must_use]
+    pub fn slope(&self, value: f64) -> f64 {
+        match self.step {
+            Step::Relative => value,
+            Step::Absolute(size) => size,
+        }
+    }
+
+    /// Whether `value` lies at an end: what is found there is where the search ended, not what the recording shows.
+    #[must_use]
+    pub fn is_at_end(&self, value: f64) -> bool {
+        const NEAR: f64 = 0.02;
+        match self.step {
+            Step::Relative => value < self.low * (1.0 + NEAR) || value > self.high / (1.0 + NEAR),
+            Step::Absolute(size) => value <= self.low + 1e-9 * size || value >= self.high - 1e-9 * size,
+        }
+    }
+}
+
+/// Sizes of the recordings, in which ranges and starts are stated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// Standard deviation of the effort, N or N m.
+    pub effort: f64,
+    /// Greatest effort, N or N m.
+    pub peak_effort: f64,
+    /// Greatest speed over some rows, m/s or rad/s.
+    pub speed: f64,
+    /// From the least to the greatest position, m or rad.
+    pub travel: f64,
+    /// Least position.
+    pub lowest: f64,
+    /// Median time between encoder rows, s.
+    pub period_s: f64,
+    /// Longest trial, s.
+    pub duration_s: f64,
+    /// Inertia of the rig file.
+    pub inertia: f64,
+    /// Viscous friction of the rig file.
+    pub viscous: f64,
+    /// Encoder's step, m or rad.
+    pub resolution: f64,
+    /// Whether positions are angles.
+    pub is_rotary: bool,
+}
+
+/// Share of the effort that a force steps by in a search.
+const FORCE_STEP: f64 = 0.05;
+
+/// Exponents of the speed that are told from dry and from viscous friction.
+const SUBLINEAR_EXPONENTS: (f64, f64) = (0.15, 0.9);
+
+/// Shares of the inertia that a load beyond a link can have.
+const LOAD_SHARES: (f64, f64) = (0.2, 0.97);
+
+/// A link's own swing, under all of the inertia, that a recording can show: from this many a trial, rad.
+const SLOWEST_SWING: f64 = 30.0;
+
+impl Term {
+    /// Name of the effect, as the contract has it.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Coulomb => "coulomb_friction",
+            Self::Stribeck => "stribeck_friction",
+            Self::Sublinear => "sublinear_friction",
+            Self::LoadFriction => "load_dependent_friction",
+            Self::ConstantLoad | Self::AngleLoad => "gravity_load",
+            Self::Cogging => "cogging",
+            Self::EffortLimit => "effort_saturation",
+            Self::EffortLag => "effort_lag",
+            Self::Compliance(_) => "transmission_compliance",
+            Self::Play(_) => "backlash",
+            Self::ForceGain => "force_gain",
+            Self::ForceDelay => "channel_delay",
+            Self::ToolInertia => "tool_inertia",
+            Self::Curve { .. } => "learned",
+        }
+    }
+
+    /// Whether it parts motor and load.
+    #[must_use]
+    pub fn is_link(&self) -> bool {
+        matches!(self, Self::Compliance(_) | Self::Play(_))
+    }
+
+    /// The ranges of its values.
+    #[must_use]
+    pub fn ranges(&self, scales: &Scales) -> Vec<Range> {
+        let force = FORCE_STEP * scales.effort;
+        let any = Range::absolute(f64::NEG_INFINITY, f64::INFINITY, force);
+        let positive = Range::absolute(0.0, f64::INFINITY, force);
+        let swing = SLOWEST_SWING / scales.duration_s;
+        let fastest = 4.0 / scales.period_s;
+        let stiffness = Range::relative(scales.inertia * swing * swing, scales.inertia * fastest * fastest);
+        let damping = Range::relative(1e-2 * scales.inertia / scales.duration_s, scales.inertia / scales.period_s);
+        let share = Range::absolute(LOAD_SHARES.0, LOAD_SHARES.1, 0.1);
+        match self {
+            Self::Coulomb => vec![positive],
+            Self::Stribeck => {
+                vec![positive, positive, Range::relative(1e-3 * scales.speed, 0.5 * scales.speed)]
+            }
+            Self::Sublinear => {
+                vec![positive, Range::absolute(SUBLINEAR_EXPONENTS.0, SUBLINEAR_EXPONENTS.1, 0.1)]
+            }
+            Self::LoadFriction => vec![Range::absolute(0.0, 1.0, 0.02)],
+            Self::ConstantLoad => vec![any],
+            // An arm's weight comes round once a turn; on a slide nobody knows.
+            Self::AngleLoad if scales.is_rotary => vec![any, any],
+            Self::AngleLoad => vec![any, any, Range::relative(0.5 / scales.travel, 12.0 / scales.travel)],
+            Self::Cogging => {
+                let finest = (2.0 * scales.resolution).max(1e-5 * scales.travel);
+                vec![any, any, Range::relative(wavenumber(0.5 * scales.travel), wavenumber(finest))]
+            }
+            Self::EffortLimit => {
+                vec![Range::absolute(0.2 * scales.effort, scales.peak_effort, 0.02 * scales.effort)]
+            }
+            Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
+            Self::Compliance(_) => vec![stiffness, damping, share],
+            Self::Play(_) => {
+                let play = Range::relative(0.05 * scales.resolution, 0.2 * scales.travel);
+                vec![stiffness, damping, share, play]
+            }
+            Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],
+            Self::ForceDelay => vec![Range::absolute(-2.0 * scales.period_s, 0.05, scales.period_s)],
+            Self::ToolInertia => vec![Range::absolute(0.0, 0.8 * scales.inertia, 0.02 * scales.inertia)],
+            Self::Curve { count, .. } => vec![any; *count],
+        }
+    }
+
+    /// Whether a value of it ended where its search did, of those values that make it what it is.
+    #[must_use]
+    pub fn is_at_end(&self, values: &[f64], scales: &Scales) -> bool {
+        let telling: &[usize] = match self {
+            Self::Coulomb | Self::EffortLag => &[0],
+            Self::Stribeck => &[1, 2],
+            Self::Sublinear => &[0, 1],
+            Self::Cogging => &[2],
+            Self::Compliance(_) => &[0, 2],
+            Self::Play(_) => &[2, 3],
+            _ => &[],
+        };
+        let ranges = self.ranges(scales);
+        telling.iter().any(|at| ranges[*at].is_at_end(values[*at]))
+    }
+
+    /// Puts it into `law` with `values`.
+    pub fn apply(&self, values: &[f64], scales: &Scales, law: &mut DriveLaw) {
+        match self {
+            Self::Coulomb => law.friction.coulomb += values[0],
+            Self::Stribeck => {
+                law.friction.coulomb += values[0];
+                law.friction.stribeck_excess = values[1];
+                law.friction.stribeck_speed = values[2];
+            }
+            Self::Sublinear => {
+                law.friction.sublinear = values[0];
+                law.friction.sublinear_exponent = values[1];
+                law.friction.reference_speed = scales.speed;
+            }
+            Self::LoadFriction => law.friction.load_share = values[0],
+            Self::ConstantLoad => law.offset += values[0],
+            Self::AngleLoad | Self::Cogging => law.periodic.push(Periodic {
+                sine: values[0],
+                cosine: values[1],
+                wavenumber: values.get(2).copied().unwrap_or(1.0),
+            }),
+            Self::EffortLimit => law.effort_limit = values[0],
+            Self::EffortLag => law.effort_lag_s = values[0],
+            Self::Compliance(encoder) | Self::Play(encoder) => {
+                law.link = Some(Link {
+                    stiffness: values[0],
+                    damping: values[1],
+                    load_share: values[2],
+                    play: values.get(3).copied().unwrap_or(0.0),
+                    encoder: *encoder,
+                });
+            }
+            Self::ForceGain => law.force_gain_error = values[0],
+            Self::ForceDelay => law.force_delay_s = values[0],
+            Self::ToolInertia => law.tool_inertia = values[0],
+            Self::Curve { origin, spacing, .. } => {
+                law.curve = PositionCurve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
+            }
+        }
+    }
+}
+
+/// Of a pattern that repeats every `pitch`.
+#[must_use]
+pub fn wavenumber(pitch: f64) -> f64 {
+    std::f64::consts::TAU / pitch
+}
