@@ -11,6 +11,7 @@
 pub mod bootstrap;
 pub mod check;
 pub mod command;
+pub mod drive;
 pub mod estimation;
 pub mod experiment;
 pub mod linalg;
@@ -20,20 +21,24 @@ pub mod selection;
 pub mod signals;
 pub mod thresholds;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 
 pub use command::{DiagnoseArgs, run};
 pub use signals::prepare::sensed;
 
+use crate::effects::{self, Place};
+use crate::error::InputError;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
 use bootstrap::problem::IdentificationProblem;
 use bootstrap::sampler::BootstrapSampler;
+use drive::outcome::Outcome;
 use report::build_report::{self, DiagnosisInputs};
 pub use report::diagnosis::Diagnosis;
 use report::diagnosis::PlotData;
-use report::refined_rig;
+use report::merge::{self, Report};
+use report::{drive_report, refined_rig};
 use selection::{confidence_interval, forward_selection, verdict};
 use signals::bandwidth::analysis_filters;
 use signals::prepare::{common_period, decimate_to_need};
@@ -67,7 +72,79 @@ pub fn diagnose(
     say("reading the sensors");
     let uniform_trials = sensed(rig, origin, trials)?;
     let findings = check::check(rig, trials, &uniform_trials);
-    let problem = problem(rig, origin, uniform_trials, seed)?;
+    let known = effects::resolve_all(rig, origin)?;
+    let drive = drive::prepare::is_recorded(rig, trials).then(|| identified(rig, trials, known, seed, say)).flatten();
+    let is_touching = rig.contact.is_some() && trials.iter().all(|trial| trial.force.is_some());
+    let contact = is_touching
+        .then(|| contact(&contact_rig(rig, drive.as_ref()), origin, trials, simulation, seed, say))
+        .transpose()?;
+    let Some((mut report, improved)) = together(rig, contact, drive.as_ref()) else {
+        bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
+    };
+    report.0.findings.splice(0..0, findings);
+    let (answer, pictures) = report;
+    Ok(Found { answer, pictures, improved })
+}
+
+/// What a diagnosis needs.
+const NEEDED: &str = "a force in contact, or some hundred rows of an effort that moves the drive";
+
+/// What the recordings say of the drive; effects that the rig already holds are nominal.
+fn identified(
+    rig: &Rig,
+    trials: &[Recording],
+    known: Vec<effects::Resolved>,
+    seed: u64,
+    say: &dyn Fn(&str),
+) -> Option<Outcome> {
+    let nominal = drive::prepare::nominal(rig, trials, known)?;
+    drive::outcome::identify(drive::prepare::trials(rig, trials), &nominal, seed, say)
+}
+
+/// The rig without its drive, which has a model of its own; what that found of the force sensor is known to the contact.
+fn contact_rig(rig: &Rig, drive: Option<&Outcome>) -> Rig {
+    let mut contact = rig.clone();
+    contact.drive = None;
+    contact.effects.retain(|table| effects::find(&table.name).is_none_or(|e| e.spec().place != Place::Drive));
+    let found = drive.map(drive_report::found).unwrap_or_default();
+    for effect in found.iter().filter(|found| found.effect.spec().place == Place::Sensor) {
+        contact.effects.push(drive_report::table(effect, rig.coordinate));
+    }
+    contact
+}
+
+/// One report and one rig from those of the contact and of the drive.
+fn together(rig: &Rig, contact: Option<Found>, drive: Option<&Outcome>) -> Option<(Report, Rig)> {
+    let drive = drive.map(|outcome| (drive_report::drive_report(outcome, rig), outcome));
+    match (contact, drive) {
+        (None, None) => None,
+        (Some(contact), None) => {
+            let improved = Rig { drive: rig.drive, ..contact.improved };
+            Some(((contact.answer, contact.pictures), improved))
+        }
+        (None, Some((report, outcome))) => Some((report, drive_report::refined(rig, rig, outcome))),
+        (Some(contact), Some((report, outcome))) => {
+            let improved = drive_report::refined(rig, &contact.improved, outcome);
+            let both = merge::merged((contact.answer, contact.pictures), report, rig.coordinate);
+            Some((both, improved))
+        }
+    }
+}
+
+/// Diagnoses the contact of `trials` by their force alone.
+fn contact(
+    rig: &Rig,
+    origin: &str,
+    trials: &[Recording],
+    simulation: &[Recording],
+    seed: u64,
+    say: &dyn Fn(&str),
+) -> Result<Found> {
+    let without_effort = |trials: &[Recording]| -> Vec<Recording> {
+        trials.iter().map(|trial| Recording { effort: None, ..trial.clone() }).collect()
+    };
+    let (trials, simulation) = (&without_effort(trials), &without_effort(simulation));
+    let problem = problem(rig, origin, sensed(rig, origin, trials)?, seed)?;
     let mut search = forward_selection::search(&problem, say);
     let assessment = verdict::assess(&problem, &mut search, say).context("nothing was searched")?;
     say("the report");
@@ -82,7 +159,7 @@ pub fn diagnose(
     let estimates = confidence_interval::estimates(&problem, fitted_model, &assessment);
     let improved = refined_rig::refined_rig(rig, &problem, fitted_model, &assessment, &estimates);
     let (problem, search, assessment, estimates) = (&problem, &search, &assessment, &estimates);
-    let parts = DiagnosisInputs { rig, problem, search, assessment, estimates, handed, findings };
+    let parts = DiagnosisInputs { rig, problem, search, assessment, estimates, handed };
     let (answer, pictures) = build_report::build_report(parts).context("no channel was left to look at")?;
     Ok(Found { answer, pictures, improved })
 }

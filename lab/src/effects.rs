@@ -98,7 +98,7 @@ pub trait Effect: Sync {
 }
 
 /// Every effect, in the order in which `palpate effects` lists them.
-pub static ALL: [&dyn Effect; 29] = [
+pub static ALL: [&dyn Effect; 30] = [
     &contact::nonlinear_stiffness::NonlinearStiffness,
     &contact::layered_stiffness::LayeredStiffness,
     &contact::hunt_crossley_damping::HuntCrossleyDamping,
@@ -113,6 +113,7 @@ pub static ALL: [&dyn Effect; 29] = [
     &contact::environment_mass::EnvironmentMass,
     &drive::coulomb_friction::CoulombFriction,
     &drive::stribeck_friction::StribeckFriction,
+    &drive::sublinear_friction::SublinearFriction,
     &drive::load_dependent_friction::LoadDependentFriction,
     &drive::gravity_load::GravityLoad,
     &drive::cogging::Cogging,

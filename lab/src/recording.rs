@@ -28,6 +28,8 @@ pub struct Recording {
     pub effort: Option<Vec<f64>>,
     /// Commanded position.
     pub reference: Option<Vec<f64>>,
+    /// What the user's rigid-body model explains of the effort: gravity, coupling.
+    pub load: Option<Vec<f64>>,
 }
 
 impl Recording {
@@ -107,6 +109,7 @@ impl Recording {
             (Role::Force, self.force.as_ref()),
             (Role::Effort, self.effort.as_ref()),
             (Role::Reference, self.reference.as_ref()),
+            (Role::Load, self.load.as_ref()),
         ]
         .into_iter()
         .filter_map(|(role, values)| Some((role, values?.as_slice())))

@@ -53,6 +53,8 @@ pub struct Columns {
     pub effort: Option<String>,
     /// Commanded position.
     pub reference: Option<String>,
+    /// Load that the user's rigid-body model explains of the effort.
+    pub load: Option<String>,
 }
 
 /// What moves the tool: inertia a + viscous v = effort - force.
@@ -62,6 +64,28 @@ pub struct Drive {
     pub inertia: f64,
     /// N s/m or N m s/rad, zero or above.
     pub viscous: f64,
+    /// On which side of the transmission the position is measured; `None`: not known.
+    pub encoder: Option<TransmissionSide>,
+}
+
+/// A side of the transmission.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TransmissionSide {
+    /// Where the effort acts.
+    Motor,
+    /// Where the contact force acts.
+    Load,
+}
+
+impl TransmissionSide {
+    /// As a rig file spells it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Motor => "motor",
+            Self::Load => "load",
+        }
+    }
 }
 
 /// What the tool touches: force = stiffness x + damping v, x = position - surface. The model is `kelvin_voigt`.

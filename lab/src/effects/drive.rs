@@ -8,5 +8,6 @@ pub mod effort_saturation;
 pub mod gravity_load;
 pub mod load_dependent_friction;
 pub mod stribeck_friction;
+pub mod sublinear_friction;
 pub mod transmission_compliance;
 mod two_mass_link;

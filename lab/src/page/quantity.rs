@@ -56,6 +56,22 @@ pub(crate) fn seconds(value: f64) -> String {
     }
 }
 
+/// The factor of three powers of ten that makes `size` read well, and the unit with its prefix.
+#[must_use]
+pub(crate) fn prefixed_unit(size: f64, unit: &str) -> (f64, String) {
+    let all = [(1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k")];
+    let fits = all.iter().rev().find(|(factor, _)| size >= *factor).unwrap_or(&all[0]);
+    if unit == "s" { (1.0, unit.to_owned()) } else { (fits.0, format!("{}{unit}", fits.1)) }
+}
+
+/// `value` to two significant digits, no more than three decimals.
+#[must_use]
+pub(crate) fn short(value: f64) -> String {
+    let decimals = (1 - value.abs().max(1e-3).log10().floor() as i32).clamp(0, 3) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 fn prefixed(value: f64, unit: &str) -> String {
     let scale = Scale::prefixed(value.abs(), unit);
     let scaled = value / scale.factor;

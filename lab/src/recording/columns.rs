@@ -12,10 +12,12 @@ pub enum Role {
     Force,
     Effort,
     Reference,
+    Load,
 }
 
 impl Role {
-    pub const ALL: [Self; 6] = [Self::Time, Self::Position, Self::Velocity, Self::Force, Self::Effort, Self::Reference];
+    pub const ALL: [Self; 7] =
+        [Self::Time, Self::Position, Self::Velocity, Self::Force, Self::Effort, Self::Reference, Self::Load];
 
     /// The column's name where the rig file gives none.
     pub fn default_name(self) -> Word {
@@ -26,6 +28,7 @@ impl Role {
             Self::Force => Word::new("force_N", "torque_Nm"),
             Self::Effort => Word::new("effort_N", "effort_Nm"),
             Self::Reference => Word::new("reference_m", "reference_rad"),
+            Self::Load => Word::new("load_N", "load_Nm"),
         }
     }
 
@@ -42,6 +45,7 @@ impl Role {
             Self::Force => &columns.force,
             Self::Effort => &columns.effort,
             Self::Reference => &columns.reference,
+            Self::Load => &columns.load,
         }
         .as_deref()
     }

@@ -130,6 +130,7 @@ impl Channels {
                 Role::Force => recording.force = Some(values),
                 Role::Effort => recording.effort = Some(values),
                 Role::Reference => recording.reference = Some(values),
+                Role::Load => recording.load = Some(values),
             }
         }
         recording

@@ -4,7 +4,9 @@ use toml::de::DeTable;
 
 use super::coordinate::{Coordinate, Word};
 use super::table::{Range, Table, line_of};
-use super::{Columns, Contact, Control, Drive, Effect, Reference, Rig, Sensors, Simulation, words};
+use super::{
+    Columns, Contact, Control, Drive, Effect, Reference, Rig, Sensors, Simulation, TransmissionSide, words,
+};
 use crate::error::InputError;
 
 /// See [`Rig::parse`].
@@ -63,6 +65,7 @@ fn columns(table: Table<'_>) -> Result<Columns, InputError> {
         force: name("force")?,
         effort: name("effort")?,
         reference: name("reference")?,
+        load: name("load")?,
     };
     table.done()?;
     Ok(columns)
@@ -75,9 +78,18 @@ fn drive(table: Table<'_>) -> Result<Option<Drive>, InputError> {
     let drive = Drive {
         inertia: table.needed(words::INERTIA, Range::Positive)?,
         viscous: table.needed(words::VISCOUS, Range::NotNegative)?,
+        encoder: encoder(&table)?,
     };
     table.done()?;
     Ok(Some(drive))
+}
+
+fn encoder(table: &Table<'_>) -> Result<Option<TransmissionSide>, InputError> {
+    let sides = [TransmissionSide::Motor, TransmissionSide::Load];
+    let Some(given) = table.text(words::ENCODER)? else { return Ok(None) };
+    let side = sides.into_iter().find(|side| side.name() == given);
+    let unknown = || table.at(words::ENCODER, format!("\"{given}\""), "\"motor\" or \"load\"");
+    side.ok_or_else(unknown).map(Some)
 }
 
 fn contact(table: Table<'_>) -> Result<Option<Contact>, InputError> {

@@ -31,13 +31,21 @@ fn columns(page: &mut Page, rig: &Rig) {
             name("force", &columns.force),
             name("effort", &columns.effort),
             name("reference", &columns.reference),
+            name("load", &columns.load),
         ],
     );
 }
 
 fn nominal(page: &mut Page, rig: &Rig) {
     if let Some(drive) = rig.drive {
-        page.table("drive", &[(words::INERTIA, number(drive.inertia)), (words::VISCOUS, number(drive.viscous))]);
+        page.table(
+            "drive",
+            &[
+                (words::INERTIA, number(drive.inertia)),
+                (words::VISCOUS, number(drive.viscous)),
+                (words::ENCODER, drive.encoder.map(|side| quoted(side.name()))),
+            ],
+        );
     }
     if let Some(contact) = rig.contact {
         page.table(

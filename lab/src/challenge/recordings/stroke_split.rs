@@ -55,6 +55,7 @@ fn slice(trial: &Recording, from: usize, to: usize) -> Recording {
         force: trial.force.as_ref().map(rows),
         effort: trial.effort.as_ref().map(rows),
         reference: trial.reference.as_ref().map(rows),
+        load: trial.load.as_ref().map(rows),
     }
 }
 

@@ -43,7 +43,7 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
     if !has("gravity_load") {
         offer(Term::ConstantLoad, vec![vec![0.0]]);
         let slow = [1.5, 4.0, 8.0].map(|turn| vec![0.0, 0.0, turn / scales.travel]).to_vec();
-        offer(Term::AngleLoad, if scales.is_rotary { vec![vec![0.0, 0.0]] } else { slow });
+        offer(Term::AngleLoad, if scales.is_rotary { vec![vec![0.0; 3]] } else { slow });
     }
     if base.model.terms.iter().filter(|term| **term == Term::Cogging).count() < MOST_RIPPLES {
         let pitches = repeating_pitches(data, &scales, disturbance);

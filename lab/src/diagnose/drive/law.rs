@@ -2,6 +2,8 @@
 //!
 //! inertia a = effort - force - viscous v - load(x) - sign(v) dry(|v|, force) + disturbance
 
+pub use crate::rig::TransmissionSide as Side;
+
 /// What lies between motor and load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
@@ -15,15 +17,6 @@ pub struct Link {
     pub load_share: f64,
     /// Which side the encoder measures.
     pub encoder: Side,
-}
-
-/// A side of the transmission.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Where the effort acts.
-    Motor,
-    /// Where the contact force acts.
-    Load,
 }
 
 impl Link {

@@ -17,10 +17,12 @@ use super::model::{Model, index};
 use super::noise::{Noise, white_variance};
 use super::selection::{Chosen, Search};
 use super::term::{Scales, Term};
+use super::named::known;
 use super::trial::DriveTrial;
+use crate::effects::Resolved;
 
 /// What a rig file says of a drive.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone)]
 pub struct NominalDrive {
     /// kg or kg m^2.
     pub inertia: f64,
@@ -32,6 +34,8 @@ pub struct NominalDrive {
     pub encoder: Option<Side>,
     /// Step of the encoder, m or rad; zero where it is not known.
     pub resolution: f64,
+    /// Effects that it already holds: nominal, and refitted like the other values.
+    pub effects: Vec<Resolved>,
 }
 
 /// A named term of the drive.
@@ -127,7 +131,7 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
     let encoder_variance = encoder_variance(&trials, &scales);
     let data = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
     say("the drive: nominal values");
-    let nominal = nominal_fit(&data, scales, encoder_variance)?;
+    let nominal = nominal_fit(&data, rig, scales, encoder_variance)?;
     let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
     let band_hz = crossing.clamp(LOWEST_BAND_HZ.min(0.1 / scales.period_s), 0.4 / scales.period_s);
     let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
@@ -188,12 +192,15 @@ fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
 /// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
 const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
 
-fn nominal_fit(data: &Data<'_>, scales: Scales, encoder_variance: f64) -> Option<Fit> {
-    let model = Model { terms: Vec::new(), scales };
+fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_variance: f64) -> Option<Fit> {
+    let encoder = rig.encoder.unwrap_or(Side::Load);
+    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
+        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
+    let model = Model { terms, scales };
     let density = 1e-2 * scales.effort.powi(2) * scales.period_s;
     let noise = Noise { ln_disturbance: density.ln(), ln_encoder: encoder_variance.ln() };
     let fits = DELAY_STARTS.map(|rows| {
-        let start = [scales.inertia, scales.viscous, rows * scales.period_s];
+        let start = [vec![scales.inertia, scales.viscous, rows * scales.period_s], values.concat()].concat();
         fit(data, &model, &start, noise, Effort::FULL)
     });
     let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
@@ -246,7 +253,8 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
     loop {
         let held = folds.held_out(&search.data, &fit, common);
         let with = rms(&held.missing);
-        let without: Vec<(Fit, f64)> = (0..fit.model.terms.len())
+        let first = search.nominal.model.terms.len();
+        let without: Vec<(Fit, f64)> = (first..fit.model.terms.len())
             .map(|at| {
                 let less = without(search, &fit, at);
                 let left = rms(&folds.held_out(&search.data, &less, common).missing);
@@ -254,14 +262,17 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
             })
             .collect();
         let share = |left: f64| 1.0 - (with / left.max(f64::MIN_POSITIVE)).powi(2);
-        let needless = (0..without.len()).filter(|at| share(without[*at].1) < LEAST_HELD_OUT_SHARE);
-        if let Some(at) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
-            fit = without[at].0.clone();
+        // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
+        let carries = |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
+        let needless = (0..without.len())
+            .filter(|nth| share(without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
+        if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
+            fit = without[nth].0.clone();
             continue;
         }
         let tried = 15.0;
-        let named = without.iter().enumerate().map(|(at, (less, left))| NamedTerm {
-            at,
+        let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
+            at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
             p_value: (tried * likelihood_ratio(&fit, less)).min(1.0),
             without: *left,
@@ -276,7 +287,7 @@ fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
     let mut less = fit.clone();
     less.values.drain(fit.model.values_of(at));
     less.model.terms.remove(at);
-    if less.model.terms.is_empty() { search.nominal.clone() } else { search.polished(&less) }
+    if less.model == search.nominal.model { search.nominal.clone() } else { search.polished(&less) }
 }
 
 /// Probability of as large a likelihood ratio where the smaller model is true (Wilks).
@@ -290,7 +301,7 @@ fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
     let before = search.unexplained(&search.nominal).powi(2);
     let mut all: Vec<Single> = Vec::new();
     for fit in &chosen.singles {
-        let Some(term) = fit.model.terms.first() else { continue };
+        let Some(term) = fit.model.terms.last() else { continue };
         if all.iter().any(|single| single.name == term.name()) {
             continue;
         }
@@ -317,7 +328,7 @@ fn alternatives(
     chosen: &Chosen,
     refitted: &HeldOut,
 ) -> Vec<Alternative> {
-    if fit.model.terms.is_empty() {
+    if fit.model == search.nominal.model {
         return Vec::new();
     }
     let before = rms(&refitted.missing);
@@ -344,7 +355,7 @@ const VALUES_MATTER: f64 = 1.15;
 fn finding(search: &Search<'_>, fit: &Fit, [given, refitted, improved]: [f64; 3], noise: f64) -> Finding {
     let above = |rms: f64| (rms * rms - noise * noise).max(0.0).sqrt();
     let effort = search.scales.effort;
-    if fit.model.terms.is_empty() {
+    if fit.model == search.nominal.model {
         let is_unknown = refitted > OVER_NOISE * noise && above(refitted) > UNKNOWN_PART_OF_EFFORT * effort;
         return match (is_unknown, given > VALUES_MATTER * refitted && above(given) > LEAST_PART_OF_EFFORT * effort) {
             (true, _) => Finding::Unknown,

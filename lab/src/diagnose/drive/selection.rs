@@ -163,9 +163,9 @@ impl Search<'_> {
     /// `best` without the terms, or the refinements of a law, that are not worth having beside the others.
     fn pruned(&self, mut best: Fit) -> Fit {
         'again: loop {
-            for at in (0..best.model.terms.len()).rev() {
+            for at in (self.nominal.model.terms.len()..best.model.terms.len()).rev() {
                 for (model, values) in simpler(&best, at) {
-                    let less = if model.terms.is_empty() {
+                    let less = if model == self.nominal.model {
                         self.nominal.clone()
                     } else {
                         self.polished(&Fit { model, values, ..best.clone() })

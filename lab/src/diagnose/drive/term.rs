@@ -173,6 +173,15 @@ impl Term {
         matches!(self, Self::Compliance(_) | Self::Play(_))
     }
 
+    /// Where the encoder sits, of a term that parts motor and load.
+    #[must_use]
+    pub fn encoder(&self) -> Option<Side> {
+        match self {
+            Self::Compliance(side) | Self::Play(side) => Some(*side),
+            _ => None,
+        }
+    }
+
     /// The ranges of its values.
     #[must_use]
     pub fn ranges(&self, scales: &Scales) -> Vec<Range> {
@@ -194,8 +203,8 @@ impl Term {
             }
             Self::LoadFriction => vec![Range::absolute(0.0, 1.0, 0.02)],
             Self::ConstantLoad => vec![any],
-            // An arm's weight comes round once a turn; on a slide nobody knows.
-            Self::AngleLoad if scales.is_rotary => vec![any, any],
+            // An arm's weight comes round once a turn, beside a constant; on a slide nobody knows the length.
+            Self::AngleLoad if scales.is_rotary => vec![any, any, any],
             Self::AngleLoad => vec![any, any, Range::relative(0.5 / scales.travel, 12.0 / scales.travel)],
             Self::Cogging => {
                 let finest = (2.0 * scales.resolution).max(1e-5 * scales.travel);
@@ -249,11 +258,13 @@ impl Term {
             }
             Self::LoadFriction => law.friction.load_share = values[0],
             Self::ConstantLoad => law.offset += values[0],
-            Self::AngleLoad | Self::Cogging => law.periodic.push(Periodic {
-                sine: values[0],
-                cosine: values[1],
-                wavenumber: values.get(2).copied().unwrap_or(1.0),
-            }),
+            Self::AngleLoad if scales.is_rotary => {
+                law.periodic.push(Periodic { sine: values[0], cosine: values[1], wavenumber: 1.0 });
+                law.offset += values[2];
+            }
+            Self::AngleLoad | Self::Cogging => {
+                law.periodic.push(Periodic { sine: values[0], cosine: values[1], wavenumber: values[2] });
+            }
             Self::EffortLimit => law.effort_limit = values[0],
             Self::EffortLag => law.effort_lag_s = values[0],
             Self::Compliance(encoder) | Self::Play(encoder) => {

@@ -17,7 +17,7 @@ impl Model {
         force: impl Fn(usize) -> f64,
     ) -> Vec<f64> {
         let (Some(effort), Some(rate)) = (&filtered.effort, &filtered.effort_rate) else { return Vec::new() };
-        let drive = Drive { inertia: values[index::INERTIA], viscous: values[index::VISCOUS] };
+        let drive = Drive { inertia: values[index::INERTIA], viscous: values[index::VISCOUS], encoder: None };
         let late = values[index::EFFORT_TIMING];
         let mut acting = self.at(Place::Drive, values, trial);
         acting.sort_by_key(|(term, _)| term.effect.spec().stage);

@@ -32,8 +32,6 @@ pub struct DiagnosisInputs<'a> {
     pub estimates: &'a [IntervalEstimate],
     /// Residuals of the user's own simulation, where it was handed over.
     pub handed: Option<Vec<Residual>>,
-    /// What the recordings showed before.
-    pub findings: Vec<Finding>,
 }
 
 impl DiagnosisInputs<'_> {
@@ -105,7 +103,7 @@ pub fn build_report(parts: DiagnosisInputs<'_>) -> Option<(Diagnosis, PlotData)>
 
 /// What the recordings showed before, and what limits the answer.
 fn findings(parts: &DiagnosisInputs<'_>, fitted_model: &FittedModel) -> Vec<Finding> {
-    let mut findings = parts.findings.clone();
+    let mut findings: Vec<Finding> = Vec::new();
     let [doubt, _] = parts.problem.quantization_power(&fitted_model.values);
     if doubt > 2.0 {
         let text = format!(

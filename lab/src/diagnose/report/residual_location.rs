@@ -184,8 +184,8 @@ impl<'a> ChannelResiduals<'a> {
         if width.is_nan() || width <= 0.0 {
             return self.map(along, unit, Vec::new(), &|_| None);
         }
-        let (factor, prefixed) = prefix(low.abs().max(high.abs()), unit);
-        let labels = (0..BINS).map(|bin| short((low + (bin as f64 + 0.5) * width) / factor)).collect();
+        let (factor, prefixed) = quantity::prefixed_unit(low.abs().max(high.abs()), unit);
+        let labels = (0..BINS).map(|bin| quantity::short((low + (bin as f64 + 0.5) * width) / factor)).collect();
         self.map(along, &prefixed, labels, &|(trial, at)| {
             Some((((pick(trial, at) - low) / width) as usize).min(BINS - 1))
         })
@@ -238,7 +238,7 @@ impl<'a> ChannelResiduals<'a> {
             channel: self.name,
             along: "frequency",
             unit: "Hz".to_owned(),
-            labels: edges.windows(2).map(|pair| short((pair[0] * pair[1]).sqrt())).collect(),
+            labels: edges.windows(2).map(|pair| quantity::short((pair[0] * pair[1]).sqrt())).collect(),
             before: over(before),
             after: over(after),
             share: above.iter().map(|above| above / total).collect(),
@@ -264,17 +264,4 @@ impl<'a> ChannelResiduals<'a> {
         }
         power
     }
-}
-
-/// The factor of three powers of ten that makes `size` read well, and the unit with its prefix.
-fn prefix(size: f64, unit: &str) -> (f64, String) {
-    let all = [(1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k")];
-    let fits = all.iter().rev().find(|(factor, _)| size >= *factor).unwrap_or(&all[0]);
-    if unit == "s" { (1.0, unit.to_owned()) } else { (fits.0, format!("{}{unit}", fits.1)) }
-}
-
-fn short(value: f64) -> String {
-    let decimals = (1 - value.abs().max(1e-3).log10().floor() as i32).clamp(0, 3) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

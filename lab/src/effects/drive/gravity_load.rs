@@ -37,6 +37,15 @@ static SPEC: EffectSpec = EffectSpec {
                 Parameter::new("load", NEWTON, "constant part", f64::NEG_INFINITY, f64::INFINITY),
             ],
         },
+        Form {
+            name: "by_position",
+            equation: "m a + b v + sine sin(2 pi x / length) + cosine cos(2 pi x / length) = effort - F",
+            parameters: &[
+                Parameter::new("sine", NEWTON, "part of a load that rises and falls slowly", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::new("cosine", NEWTON, "its other part", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::new("length", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY),
+            ],
+        },
     ],
     excited_by: "rest or slow motion, over a wide angle where the rig turns",
     resembles: &["force_bias", "coulomb_friction"],
@@ -52,17 +61,22 @@ impl Effect for GravityLoad {
         let size = 0.05 * scene.effort;
         match form {
             0 => vec![Start::sized(&[size], &[0])],
-            _ if scene.is_rotary => vec![Start::sized(&[size, size, size], &[0, 1, 2])],
+            1 if scene.is_rotary => vec![Start::sized(&[size, size, size], &[0, 1, 2])],
             _ => Vec::new(),
         }
     }
 
     fn act_on_drive(&self, form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
-        push.resistance += if form == 0 {
-            values[0]
-        } else {
-            let (sine, cosine) = push.position.sin_cos();
-            values[0] * sine + values[1] * cosine + values[2]
+        push.resistance += match form {
+            0 => values[0],
+            1 => {
+                let (sine, cosine) = push.position.sin_cos();
+                values[0] * sine + values[1] * cosine + values[2]
+            }
+            _ => {
+                let turn = std::f64::consts::TAU * push.position / values[2].max(f64::MIN_POSITIVE);
+                values[0] * turn.sin() + values[1] * turn.cos()
+            }
         };
     }
 }

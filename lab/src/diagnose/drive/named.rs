@@ -1,0 +1,82 @@
+//! Terms of the drive as effects of the list: name, form, and parameters in its order.
+
+use std::f64::consts::TAU;
+
+use super::fit::Fit;
+use super::law::Side;
+use super::model::index;
+use super::term::{Scales, Term};
+use crate::effects::{Effect, Resolved, find};
+
+/// An effect of the list with its values and their 95 % intervals.
+pub struct NamedEffect {
+    /// Which one.
+    pub effect: &'static dyn Effect,
+    /// Index of its form.
+    pub form: usize,
+    /// In the order of the form's parameters.
+    pub values: Vec<f64>,
+    /// 95 % interval of each.
+    pub intervals: Vec<[f64; 2]>,
+}
+
+/// Term `at` of `fit` as an effect; `None` for a term that is no effect of the list.
+#[must_use]
+pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect> {
+    let own = fit.model.values_of(at);
+    let (values, ends) = (&fit.values[own.clone()], &intervals[own]);
+    let term = &fit.model.terms[at];
+    let same = |from: &[usize]| -> Vec<(f64, [f64; 2])> { from.iter().map(|at| (values[*at], ends[*at])).collect() };
+    let fixed = |value: f64| (value, [value, value]);
+    let pitch = |at: usize| (TAU / values[at], [TAU / ends[at][1], TAU / ends[at][0]]);
+    let motor_share = (1.0 - values.get(2).copied().unwrap_or(0.0), ends.get(2).map_or([0.0; 2], |e| [1.0 - e[1], 1.0 - e[0]]));
+    let (form, all) = match term {
+        Term::Coulomb | Term::ConstantLoad | Term::EffortLimit | Term::EffortLag => (0, same(&[0])),
+        Term::LoadFriction | Term::ForceGain | Term::ForceDelay | Term::ToolInertia => (0, same(&[0])),
+        Term::Stribeck => (0, same(&[0, 1, 2])),
+        Term::Sublinear => (0, [same(&[0, 1]), vec![fixed(fit.model.scales.speed)]].concat()),
+        Term::AngleLoad if fit.model.scales.is_rotary => (1, same(&[0, 1, 2])),
+        Term::AngleLoad => (2, [same(&[0, 1]), vec![pitch(2)]].concat()),
+        Term::Cogging => (0, [same(&[0, 1]), vec![pitch(2)]].concat()),
+        Term::Compliance(_) => {
+            let motor = motor_share.0 * fit.values[index::INERTIA];
+            let ratio = |damping: f64| damping / (2.0 * (values[0] * motor).sqrt());
+            let damping_ratio = (ratio(values[1]), ends[1].map(ratio));
+            (1, vec![(values[0], ends[0]), motor_share, damping_ratio, fixed(1.0)])
+        }
+        Term::Play(_) => (0, vec![(values[3], ends[3]), motor_share, fixed(values[0])]),
+        Term::Curve { .. } => return None,
+    };
+    let (values, intervals) = all.into_iter().unzip();
+    Some(NamedEffect { effect: find(term.name())?, form, values, intervals })
+}
+
+/// The term, with values to start from, of an effect that a rig file already holds; `None` where the drive's model has no such term.
+#[must_use]
+pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Term, Vec<f64>)> {
+    let v = &resolved.values;
+    let damping = |stiffness: f64, motor_share: f64, ratio: f64| {
+        2.0 * ratio * (stiffness * motor_share * scales.inertia).max(0.0).sqrt()
+    };
+    let found = match (resolved.effect.spec().name, resolved.form) {
+        ("coulomb_friction", 0) => (Term::Coulomb, vec![v[0]]),
+        ("coulomb_friction", _) => (Term::Coulomb, vec![0.5 * (v[0] + v[1])]),
+        ("stribeck_friction", _) => (Term::Stribeck, v[..3].to_vec()),
+        ("sublinear_friction", _) => (Term::Sublinear, vec![v[0] * (scales.speed / v[2]).powf(v[1]), v[1]]),
+        ("load_dependent_friction", _) => (Term::LoadFriction, vec![v[0]]),
+        ("gravity_load", 0) => (Term::ConstantLoad, vec![v[0]]),
+        ("gravity_load", 1) => (Term::AngleLoad, v[..3].to_vec()),
+        ("gravity_load", _) => (Term::AngleLoad, vec![v[0], v[1], TAU / v[2]]),
+        ("cogging", _) => (Term::Cogging, vec![v[0], v[1], TAU / v.last()?]),
+        ("effort_saturation", _) => (Term::EffortLimit, vec![v[0]]),
+        ("effort_lag", _) => (Term::EffortLag, vec![v[0]]),
+        ("force_gain", _) => (Term::ForceGain, vec![v[0]]),
+        ("tool_inertia", _) => (Term::ToolInertia, vec![v[0]]),
+        ("transmission_compliance", _) => {
+            (Term::Compliance(encoder), vec![v[0], damping(v[0], v[1], v[2]), 1.0 - v[1]])
+        }
+        ("backlash", _) => (Term::Play(encoder), vec![v[2], damping(v[2], v[1], 0.05), 1.0 - v[1], v[0]]),
+        _ => return None,
+    };
+    Some(found)
+}

@@ -1,0 +1,47 @@
+//! From recordings and a rig file to the drive's trials and nominal law.
+
+use super::outcome::{NominalDrive, thinning};
+use super::trial::DriveTrial;
+use crate::effects::Resolved;
+use crate::recording::Recording;
+use crate::rig::Rig;
+use crate::sensors::Figures;
+
+/// Whether the rig has a drive whose effort every trial holds.
+#[must_use]
+pub fn is_recorded(rig: &Rig, trials: &[Recording]) -> bool {
+    rig.drive.is_some() && !trials.is_empty() && trials.iter().all(|trial| trial.effort.is_some())
+}
+
+/// The trials as the drive's model sees them. The contact force counts where the rig has a contact and every trial holds it: else a
+/// force column is none that the rig speaks of.
+#[must_use]
+pub fn trials(rig: &Rig, recordings: &[Recording]) -> Vec<DriveTrial> {
+    let every = thinning(recordings.iter().map(|trial| trial.time.len()).sum());
+    let touches = rig.contact.is_some() && recordings.iter().all(|trial| trial.force.is_some());
+    let trial = |recording: &Recording| {
+        let effort = recording.effort.clone().unwrap_or_default();
+        let effort = match &recording.load {
+            Some(load) => effort.iter().zip(load).map(|(effort, load)| effort - load).collect(),
+            None => effort,
+        };
+        let force = recording.force.clone().filter(|_| touches);
+        DriveTrial::new(recording.name.clone(), recording.time.clone(), &recording.position, effort, force, every)
+    };
+    recordings.iter().map(trial).collect()
+}
+
+/// What `rig` says of its drive, with the effects that it already holds.
+#[must_use]
+pub fn nominal(rig: &Rig, recordings: &[Recording], effects: Vec<Resolved>) -> Option<NominalDrive> {
+    let drive = rig.drive?;
+    let steps = recordings.iter().map(|trial| Figures::of(rig, trial).position.resolution);
+    Some(NominalDrive {
+        inertia: drive.inertia,
+        viscous: drive.viscous,
+        is_rotary: rig.coordinate == crate::rig::Coordinate::Rotary,
+        encoder: drive.encoder,
+        resolution: steps.fold(0.0, f64::max),
+        effects,
+    })
+}
