@@ -27,3 +27,6 @@ pub mod prepare;
 pub mod selection;
 pub mod term;
 pub mod trial;
+
+#[cfg(test)]
+mod testing;

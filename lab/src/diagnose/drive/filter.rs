@@ -170,6 +170,8 @@ struct Pair {
     substeps: usize,
     transition: [Matrix<STATES>; 2],
     driving: [Matrix<STATES>; 2],
+    /// State after the step for a constant force of one on the motor.
+    response: [[f64; STATES]; 2],
 }
 
 impl Pair {
@@ -194,15 +196,29 @@ impl Pair {
             // The integral of the driving noise over a substep by the trapezoid rule.
             let half = white.map(|row| row.map(|x| 0.5 * short * x));
             let driving = propagated(&once, &half, &half);
-            let (mut all, mut sum) = (once, driving);
+            // The same rule for a constant force: half of the velocity that it gives before the substep, half after.
+            let push = |state: [f64; STATES]| -> [f64; STATES] {
+                let start = [state[0], state[1] + 0.5 * short / motor, state[2], state[3]];
+                let mut after: [f64; STATES] = once.map(|row| row.iter().zip(&start).map(|(a, x)| a * x).sum());
+                after[1] += 0.5 * short / motor;
+                after
+            };
+            let (mut all, mut sum, mut response) = (once, driving, push([0.0; STATES]));
             for _ in 1..substeps {
                 sum = propagated(&once, &sum, &driving);
                 all = product(&once, &all);
+                response = push(response);
             }
-            (all, sum)
+            (all, sum, response)
         });
         let [apart, coupled] = both;
-        Self { step, substeps, transition: [apart.0, coupled.0], driving: [apart.1, coupled.1] }
+        Self {
+            step,
+            substeps,
+            transition: [apart.0, coupled.0],
+            driving: [apart.1, coupled.1],
+            response: [apart.2, coupled.2],
+        }
     }
 }
 
@@ -292,7 +308,7 @@ fn two_bodies(trial: &DriveTrial, law: &DriveLaw, link: Link, noise: &Noise, smo
         }
     }
     if smooth {
-        out.disturbance = smoothed_pair(trial, law, &link, &out, &history, &pairs);
+        out.disturbance = smoothed_pair(trial, &link, noise, &out, &history, &pairs);
     }
     out
 }
@@ -311,13 +327,12 @@ fn unknown_pair(trial: &DriveTrial, link: &Link, encoder: f64, effort: f64) -> M
 
 fn smoothed_pair(
     trial: &DriveTrial,
-    law: &DriveLaw,
     link: &Link,
+    noise: &Noise,
     pass: &Innovations,
     history: &[PairRow],
     pairs: &[Pair],
 ) -> Vec<f64> {
-    let (motor, _) = masses(law, link);
     let measured = if link.encoder == Side::Load { 2 } else { 0 };
     let mut force = vec![0.0; trial.len()];
     let mut next = [0.0; STATES];
@@ -332,9 +347,63 @@ fn smoothed_pair(
         let mut adjoint = next;
         adjoint[measured] += pass.innovation[row] / pass.variance[row] - along;
         let regime = usize::from(*coupled);
-        let pushed: f64 = pair.driving[regime][1].iter().zip(&adjoint).map(|(noise, adjoint)| noise * adjoint).sum();
-        force[row] = motor / pair.step * pushed;
+        let seen: f64 = pair.response[regime].iter().zip(&adjoint).map(|(response, adjoint)| response * adjoint).sum();
+        force[row] = noise.disturbance() / pair.step * seen;
         next = transposed_product(&pair.transition[regime], &adjoint);
     }
     force
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::drive::testing::TestDrive;
+
+    fn noise(drive: &TestDrive) -> Noise {
+        Noise { ln_disturbance: drive.disturbance.max(1e-12).ln(), ln_encoder: drive.encoder.powi(2).ln() }
+    }
+
+    #[test]
+    fn innovations_of_the_true_law_are_white_and_as_large_as_they_say() {
+        let drive = TestDrive { disturbance: 1e-4, ..TestDrive::PLAIN };
+        let trial = drive.trial(8.0, 3);
+        let pass = innovations(&trial, &DriveLaw::nominal(0.8, 4.0, 0.0), &noise(&drive), false);
+        let white: Vec<f64> =
+            pass.innovation.iter().zip(&pass.variance).skip(20).map(|(e, s)| e / s.sqrt()).collect();
+        let count = white.len() as f64;
+        let power = white.iter().map(|w| w * w).sum::<f64>() / count;
+        let next = white.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / count;
+        // A mean of squares has a deviation of sqrt(2 / n), a product of neighbours one of 1 / sqrt(n); four of each.
+        assert!((power - 1.0).abs() < 4.0 * (2.0 / count).sqrt(), "{power}");
+        assert!(next.abs() < 4.0 / count.sqrt(), "{next}");
+    }
+
+    #[test]
+    fn a_constant_force_that_the_law_lacks_is_what_the_smoother_shows() {
+        let drive = TestDrive { load: 0.3, ..TestDrive::PLAIN };
+        let trial = drive.trial(4.0, 5);
+        let noise = noise(&drive).with_crossing(20.0, 1e-3, 0.8);
+        let missing = innovations(&trial, &DriveLaw::nominal(0.8, 4.0, 0.0), &noise, true).disturbance;
+        let inner = &missing[500..3500];
+        let mean = inner.iter().sum::<f64>() / inner.len() as f64;
+        // A load takes from the effort: the missing force is its negative. The mean over 3 s of a band of 20 Hz is known to a
+        // hundredth of the noise in it, which is 15 mN.
+        assert!((mean + 0.3).abs() < 2e-3, "{mean}");
+    }
+
+    #[test]
+    fn two_bodies_on_a_stiff_link_are_one() {
+        let trial = TestDrive::PLAIN.trial(2.0, 7);
+        let noise = Noise { ln_disturbance: (1e-6f64).ln(), ln_encoder: (25e-12f64).ln() };
+        let one = DriveLaw::nominal(0.8, 4.0, 0.0);
+        let link = Link { stiffness: 4e5, damping: 200.0, play: 0.0, load_share: 0.4, encoder: Side::Motor };
+        let both = DriveLaw { link: Some(link), ..one.clone() };
+        let [rigid, linked] = [one, both].map(|law| innovations(&trial, &law, &noise, true));
+        let power = |x: &[f64]| x[100..].iter().map(|x| x * x).sum::<f64>();
+        let apart: Vec<f64> = rigid.innovation.iter().zip(&linked.innovation).map(|(a, b)| a - b).collect();
+        // The link gives by force over stiffness, 5 um a newton for 2 N at most, and a tenth of the encoder's noise in the mean.
+        assert!(power(&apart) < 0.05 * power(&rigid.innovation), "{}", power(&apart) / power(&rigid.innovation));
+        let rms = |x: &[f64]| (power(x) / (x.len() - 100) as f64).sqrt();
+        assert!((rms(&linked.disturbance) / rms(&rigid.disturbance) - 1.0).abs() < 0.2);
+    }
 }

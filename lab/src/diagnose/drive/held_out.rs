@@ -75,3 +75,44 @@ pub fn rms(columns: &[Vec<f64>]) -> f64 {
     let rows: usize = columns.iter().map(Vec::len).sum();
     (columns.iter().flatten().map(|value| value * value).sum::<f64>() / rows.max(1) as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::{Effort, fit};
+    use super::super::model::Model;
+    use super::super::term::{Scales, Term};
+    use super::*;
+    use crate::diagnose::drive::testing::TestDrive;
+
+    /// A load that is there in the first of two trials alone: values of the other half know nothing of it.
+    #[test]
+    fn what_lives_in_one_half_is_not_taken_from_it_by_the_other() {
+        let trials = [TestDrive { load: 0.3, ..TestDrive::PLAIN }.trial(3.0, 1), TestDrive::PLAIN.trial(3.0, 2)];
+        let data = Data { trials: &trials, least_encoder_variance: 1e-12 };
+        let scales = Scales {
+            effort: 2.0,
+            peak_effort: 5.0,
+            speed: 0.2,
+            travel: 0.05,
+            lowest: -0.025,
+            period_s: 1e-3,
+            duration_s: 3.0,
+            inertia: 0.8,
+            viscous: 4.0,
+            resolution: 1e-5,
+            is_rotary: false,
+        };
+        let model = Model { terms: vec![Term::ConstantLoad], scales };
+        let noise = Noise { ln_disturbance: (1e-5f64).ln(), ln_encoder: (25e-12f64).ln() };
+        let whole = fit(&data, &model, &[0.8, 4.0, 0.0, 0.15], noise, Effort::FULL);
+        let common = noise.with_crossing(15.0, 1e-3, 0.8);
+        let held = Folds::of(&trials).held_out(&data, &whole, &common);
+        // The first half is judged by the second's value, zero, and the second by the first's, 0.3: both leave all of it. A leak
+        // leaves nothing of it, the whole's value half of it.
+        for column in &held.missing {
+            let left = rms(std::slice::from_ref(column));
+            assert!((0.27..0.33).contains(&left), "{left}");
+        }
+        assert!((held.values[0][3] - 0.3).abs() < 0.01 && held.values[1][3].abs() < 0.01);
+    }
+}

@@ -1,0 +1,61 @@
+//! A drive to identify, for tests: simulated by small steps of its own, with nothing of the model's.
+
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha12Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::trial::DriveTrial;
+
+/// A drive under a position controller that ticks once a row.
+pub struct TestDrive {
+    /// kg
+    pub mass: f64,
+    /// N s/m
+    pub viscous: f64,
+    /// N, dry friction.
+    pub coulomb: f64,
+    /// N, constant load.
+    pub load: f64,
+    /// N^2 s, density of a white force.
+    pub disturbance: f64,
+    /// m, deviation of the encoder's white noise.
+    pub encoder: f64,
+}
+
+impl TestDrive {
+    /// 0.8 kg, 4 N s/m and an encoder of 5 um.
+    pub const PLAIN: Self =
+        Self { mass: 0.8, viscous: 4.0, coulomb: 0.0, load: 0.0, disturbance: 0.0, encoder: 5e-6 };
+
+    /// `seconds` at 1 kHz along three sines, drawn from `seed`.
+    pub fn trial(&self, seconds: f64, seed: u64) -> DriveTrial {
+        const STEPS: usize = 25;
+        let mut rng = ChaCha12Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let (rows, period) = ((seconds * 1e3) as usize, 1e-3);
+        let step = period / STEPS as f64;
+        let phases = [normal(), normal(), normal()];
+        let reference = |t: f64| {
+            let sine = |size: f64, hz: f64, phase: f64| size * (std::f64::consts::TAU * hz * t + phase).sin();
+            sine(0.02, 0.6, phases[0]) + sine(0.005, 1.7, phases[1]) + sine(0.002, 5.1, phases[2])
+        };
+        let (mut x, mut v) = (reference(0.0), 0.0);
+        let (mut time, mut position, mut effort) = (Vec::new(), Vec::new(), Vec::new());
+        for row in 0..rows {
+            let t = row as f64 * period;
+            let rate = (reference(t) - reference(t - period)) / period;
+            let u = 900.0 * (reference(t) - x) + 38.0 * (rate - v);
+            time.push(t);
+            position.push(x + self.encoder * normal());
+            effort.push(u);
+            for _ in 0..STEPS {
+                let white = (self.disturbance / step).sqrt() * normal();
+                let free = v + step * (u - self.viscous * v - self.load + white) / self.mass;
+                let held = step * self.coulomb / self.mass;
+                v = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
+                x += step * v;
+            }
+        }
+        DriveTrial::new(format!("trial-{seed}.csv"), time, &position, effort, None, 1)
+    }
+}
