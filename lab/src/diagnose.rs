@@ -33,6 +33,7 @@ use crate::rig::Rig;
 use crate::sensors::Figures;
 use bootstrap::problem::IdentificationProblem;
 use bootstrap::sampler::BootstrapSampler;
+use drive::named::NamedEffect;
 use drive::outcome::Outcome;
 use report::build_report::{self, DiagnosisInputs};
 pub use report::diagnosis::Diagnosis;
@@ -73,11 +74,23 @@ pub fn diagnose(
     let uniform_trials = sensed(rig, origin, trials)?;
     let findings = check::check(rig, trials, &uniform_trials);
     let known = effects::resolve_all(rig, origin)?;
-    let drive = drive::prepare::is_recorded(rig, trials).then(|| identified(rig, trials, known, seed, say)).flatten();
     let is_touching = rig.contact.is_some() && trials.iter().all(|trial| trial.force.is_some());
-    let contact = is_touching
-        .then(|| contact(&contact_rig(rig, drive.as_ref()), origin, trials, simulation, seed, say))
-        .transpose()?;
+    let by_force = |rig: &Rig| contact(rig, origin, trials, simulation, seed, say);
+    let mut contact = is_touching.then(|| by_force(&contact_rig(rig, &[]))).transpose()?;
+    let drive = drive::prepare::is_recorded(rig, trials).then(|| {
+        let zeroed = contact.as_ref().map(|contact| zeroed(&contact.improved, trials));
+        identified(rig, zeroed.as_deref().unwrap_or(trials), known, seed, say)
+    });
+    let mut drive = drive.flatten();
+    let found = drive.as_ref().map(drive_report::found).unwrap_or_default();
+    let sensors: Vec<NamedEffect> =
+        found.into_iter().filter(|found| CARRIED_BY_THE_DRIVE.contains(&found.name())).collect();
+    if is_touching && !sensors.is_empty() {
+        contact = Some(by_force(&contact_rig(rig, &sensors))?);
+    }
+    if let (Some(contact), Some(drive)) = (&contact, &mut drive) {
+        drive.leave_to_the_contact(|name| told_by(&contact.answer, name));
+    }
     let Some((mut report, improved)) = together(rig, contact, drive.as_ref()) else {
         bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
     };
@@ -101,16 +114,53 @@ fn identified(
     drive::outcome::identify(drive::prepare::trials(rig, trials), &nominal, seed, say)
 }
 
-/// The rig without its drive, which has a model of its own; what that found of the force sensor is known to the contact.
-fn contact_rig(rig: &Rig, drive: Option<&Outcome>) -> Rig {
+/// Effects of the force sensor that the drive tells better than the contact does: force and position alone show them as other values.
+const CARRIED_BY_THE_DRIVE: [&str; 2] = ["force_gain", "tool_inertia"];
+
+/// The rig without its drive, which has a model of its own; `sensors` is what that found of the force sensor, and known to the contact.
+fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {
     let mut contact = rig.clone();
     contact.drive = None;
     contact.effects.retain(|table| effects::find(&table.name).is_none_or(|e| e.spec().place != Place::Drive));
-    let found = drive.map(drive_report::found).unwrap_or_default();
-    for effect in found.iter().filter(|found| found.effect.spec().place == Place::Sensor) {
-        contact.effects.push(drive_report::table(effect, rig.coordinate));
-    }
+    contact.effects.extend(sensors.iter().map(|effect| drive_report::table(effect, rig.coordinate)));
     contact
+}
+
+/// `trials` with the zero of the force sensor taken off, as the contact found it: the drive would take it for a load.
+fn zeroed(improved: &Rig, trials: &[Recording]) -> Vec<Recording> {
+    let zeros: Vec<effects::Resolved> = effects::resolve_all(improved, "the improved rig")
+        .unwrap_or_default()
+        .into_iter()
+        .filter(|effect| ["force_bias", "force_drift"].contains(&effect.effect.spec().name))
+        .collect();
+    let zeroed = |trial: &Recording| {
+        let mut trial = trial.clone();
+        let Some(force) = &mut trial.force else { return trial };
+        let (start, step) = (0.0, (trial.time[trial.time.len() - 1] - trial.time[0]) / (trial.time.len() - 1) as f64);
+        for zero in &zeros {
+            // What the sensor shows of no force at all.
+            let mut shown = vec![0.0; force.len()];
+            let acceleration = vec![0.0; force.len()];
+            let mut reading = effects::Reading {
+                start,
+                step,
+                filter_width: 0.0,
+                added_filter_width: 0.0,
+                acceleration: &acceleration,
+                force: &mut shown,
+            };
+            zero.effect.act_on_reading(zero.form, &zero.values, &mut reading);
+            force.iter_mut().zip(&shown).for_each(|(force, shown)| *force -= shown);
+        }
+        trial
+    };
+    if zeros.is_empty() { trials.to_vec() } else { trials.iter().map(zeroed).collect() }
+}
+
+/// Whether `answer` names `name`, or what a slow sensor and a late one have in common.
+fn told_by(answer: &Diagnosis, name: &str) -> bool {
+    let names = |name: &str| answer.physics.iter().any(|physics| physics.name == name);
+    names(name) || (name == "channel_delay" && names("force_lag"))
 }
 
 /// One report and one rig from those of the contact and of the drive.

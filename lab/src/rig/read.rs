@@ -4,9 +4,7 @@ use toml::de::DeTable;
 
 use super::coordinate::{Coordinate, Word};
 use super::table::{Range, Table, line_of};
-use super::{
-    Columns, Contact, Control, Drive, Effect, Reference, Rig, Sensors, Simulation, TransmissionSide, words,
-};
+use super::{Columns, Contact, Control, Drive, Effect, Reference, Rig, Sensors, Simulation, TransmissionSide, words};
 use crate::error::InputError;
 
 /// See [`Rig::parse`].

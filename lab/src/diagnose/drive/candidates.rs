@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::fit::{Data, Effort, Fit, fit};
 use super::model::{Model, NOMINAL, index};
+use super::noise::Noise;
 use super::term::{Scales, Term, wavenumber};
 
 /// A term and the values that its search starts from.
@@ -77,8 +78,8 @@ pub fn tried(data: &Data<'_>, base: &Fit, candidates: Vec<Candidate>) -> Vec<Fit
         .into_iter()
         .filter_map(|candidate| {
             let model = base.model.with(candidate.term);
-            let starts = candidate.starts.iter().flat_map(|own| starting_values(base, own));
-            let fits = starts.map(|start| fit(data, &model, &start, base.noise, Effort::QUICK));
+            let starts = candidate.starts.iter().flat_map(|own| starting_points(base, own));
+            let fits = starts.map(|(start, noise)| fit(data, &model, &start, noise, Effort::QUICK));
             fits.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))
         })
         .collect();
@@ -89,17 +90,18 @@ pub fn tried(data: &Data<'_>, base: &Fit, candidates: Vec<Candidate>) -> Vec<Fit
 /// ln of the factor by which a fitted inertia may differ from the rig file's before the search starts from the latter, too.
 const INERTIA_MOVED: f64 = 0.15;
 
-/// The values of `base` with `own` behind them; where much is missing the fitted nominal values can lie far off, and those of the rig
-/// file are a start of their own.
-fn starting_values(base: &Fit, own: &[f64]) -> Vec<Vec<f64>> {
+/// The values and noise of `base` with `own` behind them; where much is missing the fitted nominal values can lie far off, and those of
+/// the rig file, with little disturbance, are a start of their own.
+fn starting_points(base: &Fit, own: &[f64]) -> Vec<(Vec<f64>, Noise)> {
     let scales = &base.model.scales;
     let fitted = [base.values.as_slice(), own].concat();
     if (base.values[index::INERTIA] / scales.inertia).ln().abs() <= INERTIA_MOVED {
-        return vec![fitted];
+        return vec![(fitted, base.noise)];
     }
     let mut given = fitted.clone();
     given[..NOMINAL].copy_from_slice(&[scales.inertia, scales.viscous, 0.3 * scales.period_s]);
-    vec![fitted, given]
+    let little = Noise { ln_disturbance: scales.starting_density().ln(), ..base.noise };
+    vec![(fitted, base.noise), (given, little)]
 }
 
 /// Cells of the finest pitch that the way is divided into.

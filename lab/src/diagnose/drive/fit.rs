@@ -135,15 +135,8 @@ impl<'a> Linearisation<'a> {
     fn of(data: &'a Data<'a>, model: &'a Model, values: &[f64], noise: &'a Noise) -> Self {
         let law = model.law(values);
         let gains = law.link.is_none().then(|| data.trials.par_iter().map(|t| Gains::of(t, &law, noise)).collect());
-        let mut at = Self {
-            data,
-            model,
-            noise,
-            ranges: model.ranges(),
-            gains,
-            base: Vec::new(),
-            innovations: Vec::new(),
-        };
+        let mut at =
+            Self { data, model, noise, ranges: model.ranges(), gains, base: Vec::new(), innovations: Vec::new() };
         at.base = at.passes(values);
         at.innovations = data.standardised(&at.base, &at.base);
         at
@@ -260,7 +253,8 @@ impl Normal {
                 let longest =
                     if range.step == super::term::Step::Relative { LONGEST_RELATIVE } else { LONGEST_ABSOLUTE };
                 let to = range.moved(values[at], step.clamp(-longest, longest));
-                let leaves = (values[at] <= range.low && to < values[at]) || (values[at] >= range.high && to > values[at]);
+                let leaves =
+                    (values[at] <= range.low && to < values[at]) || (values[at] >= range.high && to > values[at]);
                 held[at] = leaves;
                 moved[at] = to.clamp(range.low, range.high);
             }

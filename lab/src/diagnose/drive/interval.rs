@@ -43,8 +43,7 @@ fn deviations(innovations: &[f64], columns: &[Vec<f64>], block: usize) -> Vec<f6
     let count = columns.len();
     // Values of unlike size: each direction is taken as long as one.
     let sizes: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt().max(f64::MIN_POSITIVE)).collect();
-    let mut curvature =
-        DMatrix::from_fn(count, count, |i, j| dot(&columns[i], &columns[j]) / (sizes[i] * sizes[j]));
+    let mut curvature = DMatrix::from_fn(count, count, |i, j| dot(&columns[i], &columns[j]) / (sizes[i] * sizes[j]));
     for at in 0..count {
         curvature[(at, at)] += 1e-9;
     }

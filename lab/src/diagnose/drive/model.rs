@@ -25,8 +25,9 @@ pub mod index {
 /// How many values are nominal.
 pub const NOMINAL: usize = 3;
 
-/// Factor between the rig file's inertia and one that is still believed to be this drive's.
-const INERTIA_FACTOR: f64 = 50.0;
+/// Factor between the rig file's inertia and one that is still believed to be this drive's. Chosen: without a bound a law that lacks
+/// a weight explains a pendulum by an inertia that hardly moves.
+const INERTIA_FACTOR: f64 = 5.0;
 
 /// Latest effort that counts as a late clock, in rows and in seconds: a fieldbus takes some cycles.
 const LATEST_ROWS: f64 = 20.0;

@@ -20,6 +20,14 @@ pub struct NamedEffect {
     pub intervals: Vec<[f64; 2]>,
 }
 
+impl NamedEffect {
+    /// As the list has it.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.effect.spec().name
+    }
+}
+
 /// Term `at` of `fit` as an effect; `None` for a term that is no effect of the list.
 #[must_use]
 pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect> {
@@ -29,7 +37,8 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     let same = |from: &[usize]| -> Vec<(f64, [f64; 2])> { from.iter().map(|at| (values[*at], ends[*at])).collect() };
     let fixed = |value: f64| (value, [value, value]);
     let pitch = |at: usize| (TAU / values[at], [TAU / ends[at][1], TAU / ends[at][0]]);
-    let motor_share = (1.0 - values.get(2).copied().unwrap_or(0.0), ends.get(2).map_or([0.0; 2], |e| [1.0 - e[1], 1.0 - e[0]]));
+    let motor_share =
+        (1.0 - values.get(2).copied().unwrap_or(0.0), ends.get(2).map_or([0.0; 2], |e| [1.0 - e[1], 1.0 - e[0]]));
     let (form, all) = match term {
         Term::Coulomb | Term::ConstantLoad | Term::EffortLimit | Term::EffortLag => (0, same(&[0])),
         Term::LoadFriction | Term::ForceGain | Term::ForceDelay | Term::ToolInertia => (0, same(&[0])),

@@ -5,19 +5,17 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
-use super::criteria::{
-    CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_VUONG, MOST_LEFT, UNKNOWN_PART_OF_EFFORT,
-};
+use super::criteria::{CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_VUONG, MOST_LEFT, UNKNOWN_PART_OF_EFFORT};
 use super::filter::innovations;
 use super::fit::{Data, Effort, Fit, fit};
 use super::held_out::{Folds, HeldOut, missing_force, rms};
 use super::interval::intervals;
 use super::law::{DriveLaw, Side};
 use super::model::{Model, index};
+use super::named::known;
 use super::noise::{Noise, white_variance};
 use super::selection::{Chosen, Search};
 use super::term::{Scales, Term};
-use super::named::known;
 use super::trial::DriveTrial;
 use crate::effects::Resolved;
 
@@ -112,6 +110,17 @@ pub struct Outcome {
     pub band_hz: f64,
 }
 
+impl Outcome {
+    /// Takes the names off the drive's list that the contact tells already; where none is left, nothing is missing in the drive.
+    pub fn leave_to_the_contact(&mut self, is_told: impl Fn(&str) -> bool) {
+        let model = &self.chosen.model;
+        self.named.retain(|term| !is_told(model.terms[term.at].name()));
+        if self.named.is_empty() && self.finding == Finding::Explained {
+            self.finding = Finding::Parameters;
+        }
+    }
+}
+
 /// Fewest encoder rows that a drive is identified from.
 const FEWEST_ROWS: usize = 200;
 
@@ -197,8 +206,7 @@ fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_vari
     let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
         rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
     let model = Model { terms, scales };
-    let density = 1e-2 * scales.effort.powi(2) * scales.period_s;
-    let noise = Noise { ln_disturbance: density.ln(), ln_encoder: encoder_variance.ln() };
+    let noise = Noise { ln_disturbance: scales.starting_density().ln(), ln_encoder: encoder_variance.ln() };
     let fits = DELAY_STARTS.map(|rows| {
         let start = [vec![scales.inertia, scales.viscous, rows * scales.period_s], values.concat()].concat();
         fit(data, &model, &start, noise, Effort::FULL)
@@ -263,7 +271,8 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
             .collect();
         let share = |left: f64| 1.0 - (with / left.max(f64::MIN_POSITIVE)).powi(2);
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
-        let carries = |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
+        let carries =
+            |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
         let needless = (0..without.len())
             .filter(|nth| share(without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
@@ -378,11 +387,8 @@ fn a_curve_does_better(search: &Search<'_>, fit: &Fit) -> bool {
         return false;
     }
     let scales = &search.scales;
-    let curve = Term::Curve {
-        origin: scales.lowest,
-        spacing: scales.travel / (CURVE_KNOTS - 1) as f64,
-        count: CURVE_KNOTS,
-    };
+    let curve =
+        Term::Curve { origin: scales.lowest, spacing: scales.travel / (CURVE_KNOTS - 1) as f64, count: CURVE_KNOTS };
     let mut start = fit.clone();
     start.model.terms.push(curve);
     start.values.extend([0.0; CURVE_KNOTS]);
@@ -420,7 +426,8 @@ mod tests {
     use crate::diagnose::drive::testing::TestDrive;
 
     fn identified(drive: &TestDrive, inertia: f64, viscous: f64, seed: u64) -> Outcome {
-        let rig = NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() };
+        let rig =
+            NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() };
         let trials = vec![drive.trial(6.0, seed), drive.trial(6.0, seed + 1)];
         identify(trials, &rig, 1, &|_| {}).expect("a drive that moves")
     }
@@ -475,8 +482,14 @@ mod tests {
             None,
             1,
         );
-        let rig =
-            NominalDrive { inertia: 0.8, viscous: 4.0, is_rotary: false, encoder: None, resolution: 0.0, effects: vec![] };
+        let rig = NominalDrive {
+            inertia: 0.8,
+            viscous: 4.0,
+            is_rotary: false,
+            encoder: None,
+            resolution: 0.0,
+            effects: vec![],
+        };
         assert!(identify(vec![still], &rig, 1, &|_| {}).is_none());
     }
 }

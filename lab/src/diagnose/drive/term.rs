@@ -133,6 +133,14 @@ pub struct Scales {
     pub is_rotary: bool,
 }
 
+impl Scales {
+    /// Density of the disturbance that a search starts from, N^2 s: a tenth of the effort, new in each row.
+    #[must_use]
+    pub fn starting_density(&self) -> f64 {
+        1e-2 * self.effort.powi(2) * self.period_s
+    }
+}
+
 /// Share of the effort that a force steps by in a search.
 const FORCE_STEP: f64 = 0.05;
 

@@ -24,8 +24,7 @@ pub struct TestDrive {
 
 impl TestDrive {
     /// 0.8 kg, 4 N s/m and an encoder of 5 um.
-    pub const PLAIN: Self =
-        Self { mass: 0.8, viscous: 4.0, coulomb: 0.0, load: 0.0, disturbance: 0.0, encoder: 5e-6 };
+    pub const PLAIN: Self = Self { mass: 0.8, viscous: 4.0, coulomb: 0.0, load: 0.0, disturbance: 0.0, encoder: 5e-6 };
 
     /// `seconds` at 1 kHz along three sines, drawn from `seed`.
     pub fn trial(&self, seconds: f64, seed: u64) -> DriveTrial {

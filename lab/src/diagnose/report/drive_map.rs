@@ -155,7 +155,8 @@ fn by_frequency(outcome: &Outcome) -> BinnedResidual {
     let edges = crate::effects::geometric(lowest, highest, BINS + 1);
     let spectra = [before(outcome), outcome.missing[2].as_slice()].map(|columns| spectrum(columns, step, &edges));
     let total_rows: usize = outcome.trials.iter().map(DriveTrial::len).sum();
-    let even = |pair: &[f64]| outcome.expected_noise.powi(2) * total_rows as f64 * (pair[1] - pair[0]) / (2.0 * highest);
+    let even =
+        |pair: &[f64]| outcome.expected_noise.powi(2) * total_rows as f64 * (pair[1] - pair[0]) / (2.0 * highest);
     let noise: Vec<f64> = edges.windows(2).map(|pair| even(pair).max(f64::MIN_POSITIVE)).collect();
     let above: Vec<f64> = spectra[0].iter().zip(&noise).map(|(power, noise)| (power - noise).max(0.0)).collect();
     let total = above.iter().sum::<f64>().max(f64::MIN_POSITIVE);

@@ -1,8 +1,8 @@
 //! The diagnosis of the drive's channel, from what was identified of it.
 
 use super::diagnosis::{
-    Alternative, BinnedResidual, Diagnosis, EffectEvidence, Evidence, FitQuality, Location, Nominal, Phase, Physics, PlotData, Trace,
-    Value, Verdict,
+    Alternative, BinnedResidual, Diagnosis, EffectEvidence, Evidence, FitQuality, Location, Nominal, Phase, Physics,
+    PlotData, Trace, Value, Verdict,
 };
 use super::drive_map;
 use super::summary;
@@ -12,10 +12,10 @@ use crate::diagnose::drive::law::DriveLaw;
 use crate::diagnose::drive::model::index;
 use crate::diagnose::drive::named::{NamedEffect, named};
 use crate::diagnose::drive::outcome::{Finding as Standing, Outcome};
+use crate::diagnose::drive::term::Term;
 use crate::diagnose::experiment;
 use crate::diagnose::model;
 use crate::effects::{self, Place, slug};
-use crate::diagnose::drive::term::Term;
 use crate::rig::{Coordinate, Drive, Rig};
 
 /// The channel's name in the JSON.
@@ -38,7 +38,12 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         channels: vec![fit.clone()],
         fit,
         nominal: nominal(outcome, rig),
-        checked: effects::ALL.iter().map(|effect| effect.spec()).filter(|spec| spec.place == Place::Drive).map(|spec| spec.name).collect(),
+        checked: effects::ALL
+            .iter()
+            .map(|effect| effect.spec())
+            .filter(|spec| spec.place == Place::Drive)
+            .map(|spec| spec.name)
+            .collect(),
         findings: Vec::new(),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);

@@ -41,7 +41,13 @@ static SPEC: EffectSpec = EffectSpec {
             name: "by_position",
             equation: "m a + b v + sine sin(2 pi x / length) + cosine cos(2 pi x / length) = effort - F",
             parameters: &[
-                Parameter::new("sine", NEWTON, "part of a load that rises and falls slowly", f64::NEG_INFINITY, f64::INFINITY),
+                Parameter::new(
+                    "sine",
+                    NEWTON,
+                    "part of a load that rises and falls slowly",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                ),
                 Parameter::new("cosine", NEWTON, "its other part", f64::NEG_INFINITY, f64::INFINITY),
                 Parameter::new("length", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY),
             ],

@@ -33,9 +33,8 @@ impl Effect for SublinearFriction {
         &SPEC
     }
 
-    /// The drive's own search knows where to begin; along a smoothed motion it is not tried.
-    fn starts(&self, _form: usize, _scene: &ExcitationStats) -> Vec<Start> {
-        Vec::new()
+    fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
+        vec![Start::sized(&[0.03 * scene.effort, 0.6, scene.speed], &[0])]
     }
 
     fn act_on_drive(&self, _form: usize, values: &[f64], _memory: &mut EffectState, push: &mut DriveState) {
