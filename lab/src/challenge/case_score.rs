@@ -241,12 +241,17 @@ pub(super) mod tests {
         serde_json::from_value(all).unwrap()
     }
 
+    type Names = &'static [&'static str];
+
+    /// Kind, concealed, named, alternatives, and what holds of it.
+    type Judged = (&'static str, Names, Names, Names, &'static str);
+
     /// Every kind of answer against every kind of truth: detected, right, within, false alarm, unknown reported.
     #[test]
     fn every_answer_against_every_truth() {
-        let (one, two, outside) = (&["adhesion"][..], &["adhesion", "cogging"][..], &["reflex"][..]);
-        let table: &[(&str, &[&str], &[&str], &[&str], &str)] = &[
-            // kind, concealed, named, alternatives: what holds
+        let (one, two, outside): (Names, Names, Names) =
+            (&["adhesion"][..], &["adhesion", "cogging"][..], &["reflex"][..]);
+        let table: &[Judged] = &[
             ("none", &[], &[], &[], "right within"),
             ("none", &[], &["unknown"], &[], "detected alarm unknown"),
             ("none", &[], &["adhesion"], &[], "detected alarm"),

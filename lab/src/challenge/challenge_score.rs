@@ -430,7 +430,8 @@ mod tests {
 
     #[test]
     fn an_edited_score_is_refused() {
-        let edits: [(&str, fn(&mut Value)); 11] = [
+        type Edit = (&'static str, fn(&mut Value));
+        let edits: [Edit; 11] = [
             ("an answer of the diagnosis", |score| score["rows"][4]["named"] = json!(["adhesion"])),
             ("an alternative", |score| score["rows"][3]["rivals"] = json!([["adhesion"]])),
             ("what was concealed", |score| score["rows"][4]["truth"] = json!(["cogging"])),

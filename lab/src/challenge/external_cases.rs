@@ -299,7 +299,10 @@ mod tests {
     /// Every kind of answer against every kind of truth: right, within.
     #[test]
     fn every_answer_against_every_truth() {
-        let table: &[(&[&str], &[&[&str]], &[&str], &[&str], [bool; 2])] = &[
+        type Names = &'static [&'static str];
+        /// Truth, equally right answers, named, alternatives; right, within.
+        type Judged = (Names, &'static [Names], Names, Names, [bool; 2]);
+        let table: &[Judged] = &[
             (&[], &[], &[], &[], [true, true]),
             (&[], &[], &["unknown"], &[], [false, false]),
             (&[], &[&["force_bias"]], &["force_bias"], &[], [true, true]),

@@ -60,7 +60,8 @@ impl Gains {
                 continue;
             }
             let step = trial.time[row] - trial.time[row - 1];
-            if !((step - last_step).abs() <= 1e-9 * trial.period_s) {
+            let same = (step - last_step).abs() <= 1e-9 * trial.period_s;
+            if !same {
                 (transition, driving) = (law.transition(step), law.driving_noise(noise, step));
                 (last_step, steady) = (step, 0);
             }
