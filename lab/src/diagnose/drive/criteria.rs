@@ -26,6 +26,9 @@ pub const LEAST_RIPPLE_SHARE: f64 = 0.5;
 /// friction lies below it (LuGre's bristle against Coulomb's law: 0.03).
 pub const LEAST_PART_OF_ALL: f64 = 0.1;
 
+/// The same for a ripple: chosen with [`LEAST_RIPPLE_SHARE`], on the wrist of an arm whose other axes leave a wavy load.
+pub const LEAST_RIPPLE_PART: f64 = 0.2;
+
 /// Part of the unexplained force that is left, below which nothing further is looked for.
 pub const NEGLIGIBLE_PART: f64 = 0.05;
 
