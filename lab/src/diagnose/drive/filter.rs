@@ -162,6 +162,9 @@ const SUBSTEPS_PER_RADIAN: f64 = 1.0 / 0.35;
 /// Most substeps of a row.
 const MOST_SUBSTEPS: f64 = 64.0;
 
+/// Step lengths whose pair is kept at hand.
+const REMEMBERED_PAIRS: usize = 8;
+
 /// Share of the disturbance's density that acts on the load: without any the filter would trust its load for ever.
 const LOAD_DENSITY_SHARE: f64 = 1e-4;
 
@@ -285,7 +288,9 @@ fn two_bodies(trial: &DriveTrial, law: &DriveLaw, link: Link, noise: &Noise, smo
         }
         let step = trial.time[row] - trial.time[row - 1];
         let near = |pair: &Pair| (pair.step - step).abs() <= 1e-9 * trial.period_s;
-        let at = pairs.iter().position(near).unwrap_or_else(|| {
+        // A clock that jitters has as many steps as rows: only the latest are looked through.
+        let oldest = pairs.len().saturating_sub(REMEMBERED_PAIRS);
+        let at = pairs[oldest..].iter().position(near).map(|latest| oldest + latest).unwrap_or_else(|| {
             pairs.push(Pair::new(law, &link, noise, step));
             pairs.len() - 1
         });
