@@ -3,7 +3,7 @@
 use super::candidates::{one_body, simpler, tried};
 use super::criteria::{
     BLOCK_ROWS, BLOCK_S, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_EFFORT, LEAST_RIPPLE_PART,
-    LEAST_RIPPLE_SHARE, LEAST_SHARE, LEAST_VUONG, LINK_PART, NEGLIGIBLE_PART,
+    LEAST_SHARE, LEAST_VUONG, LINK_PART, NEGLIGIBLE_PART,
 };
 use super::filter::innovations;
 use super::fit::{Data, Effort, Fit, fit};
@@ -91,14 +91,10 @@ impl Search<'_> {
     pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
         let values = more.values.len().saturating_sub(less.values.len()).max(1);
         let ripples = |fit: &Fit| fit.model.terms.iter().filter(|term| **term == Term::Cogging).count();
-        let (least_share, least_part) = if ripples(more) > ripples(less) {
-            (LEAST_RIPPLE_SHARE, LEAST_RIPPLE_PART)
-        } else {
-            (LEAST_SHARE, LEAST_PART_OF_ALL)
-        };
+        let least_part = if ripples(more) > ripples(less) { LEAST_RIPPLE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
         worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
-            && worth.share > least_share
+            && worth.share > LEAST_SHARE
             && worth.part_of_all > least_part
             && worth.vuong > LEAST_VUONG
     }
