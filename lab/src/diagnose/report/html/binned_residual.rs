@@ -42,6 +42,7 @@ fn title(map: &BinnedResidual) -> String {
     let along = match map.along {
         "phase" => "By phase of contact",
         "depth" => "By depth",
+        "position" => "By position",
         "speed" => "By speed",
         "time" => "By time",
         "frequency" => "By frequency",
