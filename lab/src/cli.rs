@@ -11,6 +11,7 @@ use crate::completions::{self, CompletionsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
 use crate::listen::{self, ListenArgs};
+use crate::look::{self, LookArgs};
 use crate::profile::{self, ProfileArgs};
 use crate::replay::{self, ReplayArgs};
 use crate::reproduce::{self, ReproduceArgs};
@@ -29,6 +30,8 @@ struct Cli {
 enum Command {
     /// Find where simulation and recordings differ, and which physics is missing
     Diagnose(DiagnoseArgs),
+    /// List what a recording holds: columns or topics, rates, ranges and gaps
+    Look(LookArgs),
     /// Run recordings through the estimators
     Replay(ReplayArgs),
     /// Make a recording from a rig file
@@ -56,6 +59,7 @@ enum Command {
 pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Diagnose(args) => diagnose::run(&args),
+        Command::Look(args) => look::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
         Command::Reproduce(args) => reproduce::run(&args),

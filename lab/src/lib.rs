@@ -10,6 +10,7 @@ pub mod diagnose;
 pub mod effects;
 pub mod error;
 pub mod listen;
+pub mod look;
 pub mod outfile;
 pub mod page;
 pub mod plant;

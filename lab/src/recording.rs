@@ -1,7 +1,17 @@
 //! A trial as it was recorded: one column a channel, SI units.
 
+mod assemble;
 mod columns;
+mod csv_table;
+pub mod data_file;
+pub mod format;
+mod mat_file;
+mod mcap_file;
+mod npy_array;
+mod npz_file;
+mod parquet_file;
 mod read;
+mod ros_message;
 
 use std::io::Write as _;
 use std::path::Path;
@@ -33,12 +43,12 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads a recording by the column names of `rig`.
+    /// Reads a recording by the column names of `rig`: CSV, NPZ, MAT version 5, Parquet or MCAP.
     ///
     /// Time, position and at least one of force and effort have to be there; columns without a role are skipped.
     ///
     /// # Errors
-    /// The file cannot be read or is not UTF-8 CSV, a column is absent or of the other coordinate, a field is no finite
+    /// The file cannot be read, is of another format than its ending says or is damaged, a column is absent or of the other coordinate, a field is no finite
     /// number, a row is ragged, time does not increase, or there are fewer than two rows; with the true line in the file.
     pub fn read(path: &Path, rig: &Rig) -> Result<Self, InputError> {
         read::recording(path, rig)

@@ -54,10 +54,14 @@ impl Role {
 /// A role, and the index of its column in the file.
 pub type Found = (Role, usize);
 
-/// Finds the columns that `rig` speaks of in `header`. `place` is the file and line of the header.
-pub fn find(header: &[&str], rig: &Rig, place: &str) -> Result<Vec<Found>, InputError> {
+/// Finds the columns that `rig` speaks of in `header`. `place` is the file and line of the header; `has_clocks`: the columns bring
+/// their instants with them, and none holds the time.
+pub fn find(header: &[&str], rig: &Rig, place: &str, has_clocks: bool) -> Result<Vec<Found>, InputError> {
     let mut found = Vec::new();
     for role in Role::ALL {
+        if role == Role::Time && has_clocks {
+            continue;
+        }
         if let Some(column) = column(role, header, rig, place)? {
             found.push((role, column));
         }

@@ -1,27 +1,25 @@
-//! From a CSV file to a [`Recording`].
+//! From a file to a [`Recording`]; CSV row by row, so that errors name the line.
 
 use std::path::Path;
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use super::Recording;
 use super::columns::{self, Found, Role};
+use super::data_file::{self, DataFile};
+use super::format::Format;
+use super::{Recording, assemble};
 use crate::error::InputError;
 use crate::rig::Rig;
 
 /// See [`Recording::read`].
 pub fn recording(path: &Path, rig: &Rig) -> Result<Recording, InputError> {
     let place = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| {
-        let found = match error.kind() {
-            std::io::ErrorKind::NotFound => "no such file".to_owned(),
-            std::io::ErrorKind::IsADirectory => "a folder".to_owned(),
-            _ => error.to_string(),
-        };
-        InputError::new(&place, found, "a recording that can be read")
-    })?;
+    let bytes = data_file::read_bytes(path)?;
     let name = path.file_name().map_or_else(|| place.clone(), |name| name.to_string_lossy().into_owned());
-    File { place, bytes: &bytes }.parse(name, rig)
+    match Format::of(path, &bytes)? {
+        Format::Csv => File { place, bytes: &bytes }.parse(name, rig),
+        format => assemble::recording(DataFile::parse(&place, format, &bytes)?, &place, name, rig),
+    }
 }
 
 /// A file in memory. The CSV reader skips a byte order mark by itself.
@@ -77,7 +75,7 @@ impl File<'_> {
 
     fn channels(&self, header: &ByteRecord, rig: &Rig) -> Result<Channels, InputError> {
         let names: Vec<_> = header.iter().map(text).collect();
-        let found = columns::find(&names, rig, &self.line(header))?;
+        let found = columns::find(&names, rig, &self.line(header), false)?;
         let taken = found.iter().map(|(_, column)| names[*column].to_owned()).collect();
         let rows = self.bytes.len() / (8 * names.len()).max(1);
         let values = found.iter().map(|_| Vec::with_capacity(rows)).collect();
@@ -121,19 +119,8 @@ impl File<'_> {
 
 impl Channels {
     fn into_recording(self, name: String) -> Recording {
-        let mut recording = Recording { name, ..Recording::default() };
-        for ((role, _), values) in self.found.into_iter().zip(self.values) {
-            match role {
-                Role::Time => recording.time = values,
-                Role::Position => recording.position = values,
-                Role::Velocity => recording.velocity = Some(values),
-                Role::Force => recording.force = Some(values),
-                Role::Effort => recording.effort = Some(values),
-                Role::Reference => recording.reference = Some(values),
-                Role::Load => recording.load = Some(values),
-            }
-        }
-        recording
+        let channels = self.found.into_iter().zip(self.values).map(|((role, _), values)| (role, values)).collect();
+        Recording { name, ..assemble::into_recording(channels) }
     }
 }
 
