@@ -10,6 +10,7 @@ use crate::challenge::{self, ChallengeArgs};
 use crate::completions::{self, CompletionsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
+use crate::investigate::{self, InvestigateArgs};
 use crate::listen::{self, ListenArgs};
 use crate::look::{self, LookArgs};
 use crate::profile::{self, ProfileArgs};
@@ -32,6 +33,8 @@ enum Command {
     Diagnose(DiagnoseArgs),
     /// List what a recording holds: columns or topics, rates, ranges and gaps
     Look(LookArgs),
+    /// Diagnose, design the next trial, run it, and diagnose again
+    Investigate(InvestigateArgs),
     /// Run recordings through the estimators
     Replay(ReplayArgs),
     /// Make a recording from a rig file
@@ -60,6 +63,7 @@ pub fn run() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Look(args) => look::run(&args),
+        Command::Investigate(args) => investigate::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
         Command::Reproduce(args) => reproduce::run(&args),

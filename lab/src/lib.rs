@@ -9,6 +9,8 @@ pub mod demo;
 pub mod diagnose;
 pub mod effects;
 pub mod error;
+pub mod experiment_design;
+pub mod investigate;
 pub mod listen;
 pub mod look;
 pub mod outfile;

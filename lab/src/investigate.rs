@@ -1,0 +1,19 @@
+//! `palpate investigate`: diagnose, design a trial, run it, record it, and diagnose again, until one explanation is left.
+//!
+//! A [`test_bed`] runs a reference on the rig: a simulation with concealed physics ([`simulated_bed`]) or any command of the user
+//! ([`command_bed`]). [`session`] is the loop; what is open after a diagnosis is put into questions ([`questions`]) for
+//! [`experiment_design`](crate::experiment_design). [`monitor`] holds every recording against the limits and knows nothing of the
+//! controller or of the design. [`record`] is what the folder of an investigation holds, from which it is resumed, and
+//! [`report`] the page.
+
+mod command;
+pub mod command_bed;
+pub mod monitor;
+pub mod questions;
+pub mod record;
+pub mod report;
+pub mod session;
+pub mod simulated_bed;
+pub mod test_bed;
+
+pub use command::{InvestigateArgs, run};
