@@ -6,16 +6,17 @@ use anyhow::{Context, Result};
 
 use crate::case_request::CaseRequest;
 use crate::case_spec::CaseSpec;
+use crate::closed_loop::SimulatedTrial;
 use crate::nominal::NominalParameters;
 use crate::recorded_trial::{RecordedTrial, channels};
 use crate::rig_file::RigFile;
 use crate::rng::{self, Stream};
 use crate::scale::{Scale, Unit};
 use crate::sensors::Sensors;
-use crate::simulator::{OwnSimulator, Simulator};
+use crate::simulator::{OwnSimulator, Simulator, SimulatorKind};
 use crate::strength;
 use crate::test_rig::TestRig;
-use crate::truth::Truth;
+use crate::truth::{TrueEffect, Truth};
 
 /// One case.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,24 +61,37 @@ pub fn draw_in<W: Simulator>(simulator: &mut W, seed: u64, index: u64, request: 
     let spec = CaseSpec::draw(request, simulator.supported(), &mut rng::stream(seed, index, Stream::Spec))?;
     let rig = TestRig::draw(simulator, &spec, seed, index);
     let (effects, trials) = rig.simulate_with_effects(simulator, &spec, &rng::stream(seed, index, Stream::Effect))?;
+    Ok(case(simulator.source(), seed, index, &spec, &rig, effects, &trials))
+}
+
+/// The case of a drawn rig and its trials.
+pub(crate) fn case(
+    source: SimulatorKind,
+    seed: u64,
+    index: u64,
+    spec: &CaseSpec,
+    rig: &TestRig,
+    effects: Vec<TrueEffect>,
+    trials: &[SimulatedTrial],
+) -> Case {
     let mut noise = rng::stream(seed, index, Stream::Noise);
     let recordings = trials
         .iter()
         .zip(&rig.references)
-        .map(|(trial, reference)| RecordedTrial::new(trial, reference, &spec, &rig.sensors, &mut noise))
+        .map(|(trial, reference)| RecordedTrial::new(trial, reference, spec, &rig.sensors, &mut noise))
         .collect();
     let scale = spec.scale;
     let Sensors { position_step, force_step, force_noise } = rig.sensors;
     let truth = Truth {
-        source: simulator.source(),
+        source,
         seed,
         index,
         kind: spec.kind,
         effects,
-        strength: rig.strength(strength::residual(&trials, &rig.setup.nominal, &rig.sensors), spec.effort),
+        strength: rig.strength(strength::residual(trials, &rig.setup.nominal, &rig.sensors), spec.effort),
         floor: scale.apply(rig.sensors.floor(), Unit::Force),
         floor_unit: Unit::Force.name(scale.rotary),
-        channels: channels(&spec),
+        channels: channels(spec),
         grade: spec.grade,
         sensors: Sensors {
             position_step: scale.apply(position_step, Unit::Length),
@@ -90,7 +104,7 @@ pub fn draw_in<W: Simulator>(simulator: &mut W, seed: u64, index: u64, request: 
         excitation: spec.excitation,
         scale,
     };
-    Ok(Case { rig: rig_file(&rig, &spec).text(), trials: recordings, truth })
+    Case { rig: rig_file(rig, spec).text(), trials: recordings, truth }
 }
 
 fn rig_file(rig: &TestRig, spec: &CaseSpec) -> RigFile {

@@ -83,16 +83,32 @@ impl Controller {
 
 /// Runs one trial along `reference`, m, one value a period.
 #[must_use]
-pub fn simulate_trial(setup: &LoopSetup, mut model: RigModel, reference: &[f64]) -> SimulatedTrial {
+pub fn simulate_trial(setup: &LoopSetup, model: RigModel, reference: &[f64]) -> SimulatedTrial {
+    let first = reference.first().copied().unwrap_or(0.0);
+    simulate_commanded(setup, model, reference.len(), first, f64::INFINITY, &mut |row, _, _| reference[row])
+}
+
+/// Runs one trial of `rows` periods from rest at `first`, m: `command` is told the row, the encoder's reading, m, and the force at
+/// the sensor, N, and gives the position to go to, m. The controller's effort ends at `effort_limit`, N.
+#[must_use]
+pub fn simulate_commanded(
+    setup: &LoopSetup,
+    mut model: RigModel,
+    rows: usize,
+    first: f64,
+    effort_limit: f64,
+    command: &mut dyn FnMut(usize, f64, f64) -> f64,
+) -> SimulatedTrial {
     let dt = SAMPLE_PERIOD_S / setup.steps as f64;
     let mut controller = Controller { control: setup.control, last: None, slope: 0.0 };
     let mut trial = SimulatedTrial::default();
-    model.drive.rest_at(reference.first().copied().unwrap_or(0.0), &mut model.contact, dt);
+    model.drive.rest_at(first, &mut model.contact, dt);
     let mut felt = read_force(&mut model, 0.0, 0.0, dt);
-    for (row, wanted) in reference.iter().enumerate() {
+    for row in 0..rows {
         let tool = model.drive.tool;
         let reading = setup.encoder.read(tool.position);
-        let effort = controller.update(wanted - reading);
+        let wanted = command(row, reading, felt);
+        let effort = controller.update(wanted - reading).clamp(-effort_limit, effort_limit);
         trial.position.push(tool.position);
         trial.velocity.push(tool.velocity);
         trial.reading.push(reading);

@@ -13,6 +13,7 @@ pub mod case;
 pub mod case_request;
 pub mod case_spec;
 pub mod closed_loop;
+pub mod concealed_rig;
 pub mod effect;
 pub mod excitation;
 pub mod external_simulators;
@@ -32,6 +33,7 @@ pub mod truth;
 
 pub use case::{Case, draw, draw_in};
 pub use case_request::{CaseRequest, EffectSelection};
+pub use concealed_rig::{ConcealedRig, Excursion};
 pub use external_simulators::ExternalSimulator;
 pub use simulator::{Simulator, SimulatorKind};
 pub use truth::Truth;

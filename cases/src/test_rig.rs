@@ -26,9 +26,14 @@ pub struct TestRig {
     pub stated: NominalParameters,
     /// Its sensors.
     pub sensors: Sensors,
+    /// The deepest contact that suits it, m.
+    pub deepest: f64,
     /// What the controller follows, m, one value a period.
     pub references: Vec<Vec<f64>>,
 }
+
+/// What is true of each effect, each with its size, and the trials with all of them.
+pub type SizedEffects<W> = (Vec<TrueEffect>, Vec<(Box<<W as Simulator>::Effect>, f64)>, Vec<SimulatedTrial>);
 
 impl TestRig {
     /// The rig of case `index` of `seed` in `simulator`.
@@ -51,7 +56,7 @@ impl TestRig {
                 excitation::reference_for(&depths, &believed, &control)
             })
             .collect();
-        Self { setup: LoopSetup { nominal, control, encoder, steps: SUBSTEPS }, stated, sensors, references }
+        Self { setup: LoopSetup { nominal, control, encoder, steps: SUBSTEPS }, stated, sensors, deepest, references }
     }
 
     /// The larger of both residuals over the floor, that of the effort only where it is recorded.
@@ -71,6 +76,19 @@ impl TestRig {
         spec: &CaseSpec,
         rng: &CaseRng,
     ) -> Result<(Vec<TrueEffect>, Vec<SimulatedTrial>)> {
+        self.sized_effects(simulator, spec, rng).map(|(effects, _, trials)| (effects, trials))
+    }
+
+    /// As [`Self::simulate_with_effects`], and the effects themselves with their sizes.
+    ///
+    /// # Errors
+    /// `simulator` has no such effect, or gave up.
+    pub fn sized_effects<W: Simulator>(
+        &self,
+        simulator: &mut W,
+        spec: &CaseSpec,
+        rng: &CaseRng,
+    ) -> Result<SizedEffects<W>> {
         let mut trials = simulator.run(&self.setup, &self.references, &[])?;
         let motion = nominal_motion(&trials, &self.setup.nominal, spec.scale);
         let (mut effects, mut shapes) = (Vec::new(), Vec::new());
@@ -91,7 +109,7 @@ impl TestRig {
             let all: Vec<_> = shapes.iter().map(|(shape, size)| (shape.as_ref(), *size)).collect();
             trials = simulator.run(&self.setup, &self.references, &all)?;
         }
-        Ok((effects, trials))
+        Ok((effects, shapes, trials))
     }
 
     /// The size at which `shape` alone is as strong as `requested`.

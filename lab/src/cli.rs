@@ -10,6 +10,7 @@ use crate::challenge::{self, ChallengeArgs};
 use crate::completions::{self, CompletionsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
+use crate::investigate::trial_of_method::{self, InvestigateChallengeArgs};
 use crate::investigate::{self, InvestigateArgs};
 use crate::listen::{self, ListenArgs};
 use crate::look::{self, LookArgs};
@@ -35,6 +36,8 @@ enum Command {
     Look(LookArgs),
     /// Diagnose, design the next trial, run it, and diagnose again
     Investigate(InvestigateArgs),
+    /// Investigate rigs whose missing physics is concealed, against fixed rich recordings of equal length
+    InvestigateChallenge(InvestigateChallengeArgs),
     /// Run recordings through the estimators
     Replay(ReplayArgs),
     /// Make a recording from a rig file
@@ -64,6 +67,7 @@ pub fn run() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Look(args) => look::run(&args),
         Command::Investigate(args) => investigate::run(&args),
+        Command::InvestigateChallenge(args) => trial_of_method::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
         Command::Reproduce(args) => reproduce::run(&args),

@@ -4,10 +4,11 @@
 //! ([`command_bed`]). [`session`] is the loop; what is open after a diagnosis is put into questions ([`questions`]) for
 //! [`experiment_design`](crate::experiment_design). [`monitor`] holds every recording against the limits and knows nothing of the
 //! controller or of the design. [`record`] is what the folder of an investigation holds, from which it is resumed, and
-//! [`report`] the page.
+//! [`report`] the page. [`trial_of_method`] puts the whole to rigs whose missing physics is concealed from it.
 
 mod command;
 pub mod command_bed;
+pub mod concealed_bed;
 pub mod monitor;
 pub mod questions;
 pub mod record;
@@ -15,5 +16,6 @@ pub mod report;
 pub mod session;
 pub mod simulated_bed;
 pub mod test_bed;
+pub mod trial_of_method;
 
 pub use command::{InvestigateArgs, run};

@@ -260,11 +260,9 @@ impl Situation<'_> {
                     along(*other).map_or(0.0, |(_, response)| response.discrepancy(&shown[0], &known[*other]));
                 0.5 * (forward + reverse)
             }
-            Question::Interval(parameter, _) => {
+            Question::Interval(parameter, half_width) => {
                 let at = own_steps.iter().position(|(own, _)| own == parameter);
-                at.map_or(0.0, |at| {
-                    self.interval_energy(parameter, own_steps[at].1, own.marginal_information(at, &known[0]))
-                })
+                at.map_or(0.0, |at| self.interval_energy(parameter, own_steps[at].1, *half_width, at, &own, &known[0]))
             }
         });
         Some(Tried {
@@ -276,11 +274,24 @@ impl Situation<'_> {
         })
     }
 
-    /// Information per step squared, in the energy that narrows the interval to what is wanted.
-    fn interval_energy(&self, parameter: &Parameter, step: f64, information: f64) -> f64 {
-        let wanted = WANTED_HALF_WIDTH * parameter.get(self.answer()).unwrap_or(0.0).abs() / step.abs();
-        let needed = (DEVIATIONS_95 / wanted.max(f64::MIN_POSITIVE)).powi(2);
-        DECISIVE_ENERGY * information / needed
+    /// Information about `parameter`, value `at` of a step `step` each, in the energy that narrows its interval to what is wanted.
+    ///
+    /// What the recordings are counted to hold and what their interval shows differ by what models leave of a recording: the
+    /// information of a planned motion is discounted as theirs is.
+    fn interval_energy(
+        &self,
+        parameter: &Parameter,
+        step: f64,
+        half_width: f64,
+        at: usize,
+        own: &LinearizedResponse,
+        known: &DMatrix<f64>,
+    ) -> f64 {
+        let per_step = |half_width: f64| (DEVIATIONS_95 * step / half_width.max(f64::MIN_POSITIVE)).powi(2);
+        let counted = known.clone().cholesky().map_or(0.0, |solver| solver.inverse()[(at, at)].recip());
+        let discount = (per_step(half_width) / counted.max(f64::MIN_POSITIVE)).min(1.0);
+        let wanted = WANTED_HALF_WIDTH * parameter.get(self.answer()).unwrap_or(0.0).abs();
+        DECISIVE_ENERGY * discount * own.marginal_information(at, known) / per_step(wanted)
     }
 
     /// The candidates that decide most a second, one after the other until the time is up.

@@ -89,7 +89,7 @@ impl TestBed for SimulatedBed {
 }
 
 /// Leaves the first `rows` rows.
-fn truncate(recording: &mut crate::recording::Recording, rows: usize) {
+pub(super) fn truncate(recording: &mut crate::recording::Recording, rows: usize) {
     recording.time.truncate(rows);
     recording.position.truncate(rows);
     let columns = [&mut recording.velocity, &mut recording.force, &mut recording.effort, &mut recording.reference];
@@ -97,7 +97,7 @@ fn truncate(recording: &mut crate::recording::Recording, rows: usize) {
 }
 
 /// Commands the reference row by row, and a way back once a limit comes near or the user stops.
-struct Supervisor<'a> {
+pub(super) struct Supervisor<'a> {
     reference: &'a [f64],
     interrupted: &'a AtomicBool,
     monitor: LimitMonitor,
@@ -116,7 +116,7 @@ struct Stop {
 }
 
 impl<'a> Supervisor<'a> {
-    fn new(request: &'a TrialRequest<'a>, surface: f64) -> Self {
+    pub(super) fn new(request: &'a TrialRequest<'a>, surface: f64) -> Self {
         Self {
             reference: request.reference,
             interrupted: request.interrupted,
@@ -128,7 +128,7 @@ impl<'a> Supervisor<'a> {
     }
 
     /// How it ended, and after how many rows.
-    fn ended(&self) -> (Ending, usize) {
+    pub(super) fn ended(&self) -> (Ending, usize) {
         match self.stopped {
             None => (Ending::Completed, self.reference.len()),
             Some(Stop { row, violation: Some(violation), .. }) => (Ending::Stopped(violation), row),
