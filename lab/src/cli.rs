@@ -10,6 +10,7 @@ use crate::challenge::{self, ChallengeArgs};
 use crate::completions::{self, CompletionsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
+use crate::export::{self, ExportArgs};
 use crate::investigate::trial_of_method::{self, InvestigateChallengeArgs};
 use crate::investigate::{self, InvestigateArgs};
 use crate::listen::{self, ListenArgs};
@@ -38,6 +39,8 @@ enum Command {
     Investigate(InvestigateArgs),
     /// Investigate rigs whose missing physics is concealed, against fixed rich recordings of equal length
     InvestigateChallenge(InvestigateChallengeArgs),
+    /// Write the physics that was found into your own simulation model
+    Export(ExportArgs),
     /// Run recordings through the estimators
     Replay(ReplayArgs),
     /// Make a recording from a rig file
@@ -68,6 +71,7 @@ pub fn run() -> ExitCode {
         Command::Look(args) => look::run(&args),
         Command::Investigate(args) => investigate::run(&args),
         Command::InvestigateChallenge(args) => trial_of_method::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Simulate(args) => simulate::run(args),
         Command::Reproduce(args) => reproduce::run(&args),

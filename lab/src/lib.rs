@@ -10,6 +10,7 @@ pub mod diagnose;
 pub mod effects;
 pub mod error;
 pub mod experiment_design;
+pub mod export;
 pub mod investigate;
 pub mod listen;
 pub mod look;

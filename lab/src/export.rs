@@ -1,0 +1,171 @@
+//! `palpate export`: the physics that was found, in the model of the simulator that the user has.
+//!
+//! The joint's coordinate is taken for the rig's position, and the force of its actuator for the effort: same sign, same zero, SI units.
+
+mod description;
+mod found_effect;
+mod mjcf;
+mod mjcf_model;
+mod passive_force;
+mod python_stepper;
+mod xml_edit;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, bail};
+use clap::{Args, ValueEnum};
+
+use crate::error::{InputError, UsageError};
+use crate::outfile::OutFile;
+use crate::rig::Rig;
+use found_effect::FoundEffect;
+
+/// Write the physics that was found into your own simulation model
+#[derive(Debug, Clone, Args)]
+pub struct ExportArgs {
+    /// What the model is written in
+    #[arg(long, value_enum)]
+    pub to: Target,
+    /// The improved rig file, from `palpate diagnose --model`
+    #[arg(value_name = "IMPROVED.toml")]
+    pub improved: PathBuf,
+    /// Your model: MJCF, URDF or SDF; for `python`, the MJCF model that the stepper steps
+    #[arg(long, value_name = "MODEL")]
+    pub into: PathBuf,
+    /// The joint that was diagnosed
+    #[arg(long, value_name = "NAME")]
+    pub joint: String,
+    /// The joint's actuator, where it has several (MJCF)
+    #[arg(long, value_name = "NAME")]
+    pub actuator: Option<String>,
+    /// The sensor of the contact force, for effects of the sensor (MJCF)
+    #[arg(long, value_name = "NAME")]
+    pub sensor: Option<String>,
+    /// Write what the format can say and leave the rest out, instead of refusing
+    #[arg(long)]
+    pub partial: bool,
+    /// Write here instead of to standard output
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// A simulator's language.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// MuJoCo's XML, version 4.0
+    Mjcf,
+    /// URDF: joint damping, friction and effort limit
+    Urdf,
+    /// SDFormat: as URDF
+    Sdf,
+    /// URDF for Drake, whose joints have damping and no friction
+    Drake,
+    /// A Python module that steps MuJoCo with what MJCF cannot say
+    Python,
+}
+
+/// What is to be exported, and where it came from.
+pub struct Export<'a> {
+    /// The improved rig.
+    pub rig: &'a Rig,
+    /// Name of its file, without a folder.
+    pub source: String,
+    /// Its effects.
+    pub effects: Vec<FoundEffect>,
+    /// The command line.
+    pub args: &'a ExportArgs,
+}
+
+/// An effect that a format cannot say, and why.
+pub struct Refused {
+    /// The effect.
+    pub name: &'static str,
+    /// Why.
+    pub reason: String,
+}
+
+/// A model and what is not in it.
+pub struct Exported {
+    /// The model's text.
+    pub text: String,
+    /// What it cannot say.
+    pub refused: Vec<Refused>,
+    /// What the user has to know.
+    pub notes: Vec<String>,
+}
+
+/// Runs `palpate export`.
+///
+/// # Errors
+/// A file at fault, a joint that the model does not have, an element that it has already, or an effect that the format cannot say.
+pub fn run(args: &ExportArgs) -> Result<()> {
+    let rig = Rig::read(&args.improved)?;
+    let origin = args.improved.display().to_string();
+    let source = args.improved.file_name().map_or_else(|| origin.clone(), |name| name.to_string_lossy().into_owned());
+    let effects = found_effect::all(&rig, &origin)?;
+    let export = Export { rig: &rig, source, effects, args };
+    refuse_own_input(args)?;
+    let model = read_text(&args.into)?;
+    let exported = match args.to {
+        Target::Mjcf => mjcf::export(&export, &model)?,
+        Target::Python => python_stepper::export(&export, &model)?,
+        Target::Urdf | Target::Sdf | Target::Drake => description::export(&export, &model)?,
+    };
+    report(&exported, args, &origin)?;
+    match &args.out {
+        Some(path) => {
+            let mut file = OutFile::create(path)?;
+            file.write_all(exported.text.as_bytes()).map_err(|error| file.fault(&error))?;
+            Ok(file.commit()?)
+        }
+        None => Ok(std::io::stdout().write_all(exported.text.as_bytes())?),
+    }
+}
+
+/// To standard error: standard output is for the model.
+fn report(exported: &Exported, args: &ExportArgs, origin: &str) -> Result<()> {
+    for note in &exported.notes {
+        eprintln!("note: {note}");
+    }
+    if args.partial {
+        exported.refused.iter().for_each(|refused| eprintln!("left out: {}: {}", refused.name, refused.reason));
+        return Ok(());
+    }
+    if exported.refused.is_empty() {
+        return Ok(());
+    }
+    let reasons: Vec<String> =
+        exported.refused.iter().map(|refused| format!("{} ({})", refused.name, refused.reason)).collect();
+    let expected = match args.to {
+        Target::Mjcf => {
+            "effects that MJCF can say; --partial leaves these out, and --to python writes them as a stepper where it can"
+        }
+        _ => "effects that this format can say; --partial leaves these out",
+    };
+    bail!(InputError::new(format!("{origin}: [[effect]]"), reasons.join("; "), expected))
+}
+
+fn read_text(path: &Path) -> Result<String, InputError> {
+    std::fs::read_to_string(path).map_err(|error| {
+        let found = match error.kind() {
+            std::io::ErrorKind::NotFound => "no such file".to_owned(),
+            std::io::ErrorKind::InvalidData => "bytes that are not UTF-8".to_owned(),
+            _ => error.to_string(),
+        };
+        InputError::new(path.display(), found, "a model that can be read")
+    })
+}
+
+/// A slip on the command line must not cost a user a model.
+fn refuse_own_input(args: &ExportArgs) -> Result<(), UsageError> {
+    let Some(place) = args.out.as_ref().and_then(|out| std::fs::canonicalize(out).ok()) else { return Ok(()) };
+    let is_input = [&args.improved, &args.into]
+        .into_iter()
+        .any(|input| std::fs::canonicalize(input).is_ok_and(|input| input == place));
+    if is_input {
+        Err(UsageError::new("--out", "an input of this very run", "another file to write to"))
+    } else {
+        Ok(())
+    }
+}

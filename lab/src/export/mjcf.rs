@@ -1,0 +1,353 @@
+//! MJCF for MuJoCo 4.0: every effect that the language can say.
+
+use super::found_effect::{FoundEffect, short};
+use super::mjcf_model::{FORCE_ACTUATORS, MjcfModel};
+use super::passive_force::{self, Bristles};
+use super::xml_edit::{self, Changes, comment};
+use super::{Export, Exported, Refused};
+use crate::error::InputError;
+
+/// The user's model with the effects in it.
+///
+/// # Errors
+/// No MJCF, no such joint, actuator or sensor, or an element that the model has already.
+pub fn export(export: &Export<'_>, text: &str) -> Result<Exported, InputError> {
+    let place = export.args.into.display().to_string();
+    let document = xml_edit::parse(&place, text)?;
+    let model = MjcfModel::of(place, &document, &export.args.joint, export.rig.coordinate)?;
+    let mut writer = Writer {
+        export,
+        model: &model,
+        changes: Changes::default(),
+        passive: Vec::new(),
+        refused: Vec::new(),
+        notes: Vec::new(),
+    };
+    writer.nominal();
+    for effect in &export.effects {
+        writer.effect(effect)?;
+    }
+    writer.passive_actuators();
+    let Writer { changes, refused, notes, .. } = writer;
+    Ok(Exported { text: changes.apply(text), refused, notes })
+}
+
+/// Whether MJCF can say an effect, and why not.
+pub fn refusal(effect: &FoundEffect) -> Option<&'static str> {
+    Some(match (effect.name, effect.form) {
+        ("coulomb_friction" | "gravity_load" | "cogging" | "backlash" | "transmission_compliance", _)
+        | ("effort_saturation" | "effort_lag" | "channel_delay", _)
+        | ("stribeck_friction", "gaussian")
+        | ("force_saturation", "symmetric") => return None,
+        ("stribeck_friction", _) => "MuJoCo's bristles know the Gaussian decay only",
+        ("sublinear_friction", _) => "MuJoCo's damping is a polynomial of the speed with whole powers",
+        ("load_dependent_friction", _) => "no element makes a joint's friction depend on a contact force",
+        ("force_saturation", _) => "a sensor's cutoff has a sharp corner",
+        ("force_bias" | "force_drift" | "force_gain" | "force_lag" | "mains_hum", _) => {
+            "a sensor has noise, delay and cutoff alone"
+        }
+        ("tool_inertia", _) => "it is mass beyond the sensor's site: move that mass in your model",
+        ("environment_mass", _) => "it is a body of your model that is touched: give it this mass",
+        _ => "MuJoCo's contact is an impedance of the constraint solver, not a law of depth and rate",
+    })
+}
+
+struct Writer<'a> {
+    export: &'a Export<'a>,
+    model: &'a MjcfModel<'a>,
+    changes: Changes,
+    /// Elements for `<actuator>`, each with its comment.
+    passive: Vec<String>,
+    refused: Vec<Refused>,
+    notes: Vec<String>,
+}
+
+impl Writer<'_> {
+    /// The refitted viscous friction. The inertia is spread over the model's bodies and is left to the user.
+    fn nominal(&mut self) {
+        let Some(drive) = self.export.rig.drive else { return };
+        let unit = self.export.rig.coordinate;
+        let before = self.model.joint_number("damping");
+        let words = format!("damping {} {} (before: {})", short(drive.viscous), unit.damping_unit(), short(before));
+        self.note_at_joint(&words);
+        // A polynomial keeps its higher powers.
+        let damping = self.model.resolved(self.model.joint, "damping").unwrap_or_default();
+        let rest: Vec<&str> = damping.split_whitespace().skip(1).collect();
+        let value = std::iter::once(drive.viscous.to_string()).chain(rest.into_iter().map(str::to_owned));
+        self.changes.set_attribute(self.model.joint, "damping", &value.collect::<Vec<_>>().join(" "));
+        let moved = format!("{} {}", short(drive.inertia), unit.inertia_unit());
+        self.notes.push(format!(
+            "the recordings show an inertia of {moved} at joint {}; the model's bodies are left as they are",
+            self.model.name
+        ));
+    }
+
+    fn effect(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        if let Some(reason) = refusal(effect) {
+            self.refused.push(Refused { name: effect.name, reason: reason.to_owned() });
+            return Ok(());
+        }
+        match effect.name {
+            "coulomb_friction" => self.coulomb(effect),
+            "stribeck_friction" => self.stribeck(effect),
+            "gravity_load" => {
+                self.gravity(effect);
+                Ok(())
+            }
+            "cogging" => {
+                self.cogging(effect);
+                Ok(())
+            }
+            "backlash" => self.play(effect),
+            "transmission_compliance" => self.link(effect),
+            "effort_saturation" => self.saturation(effect),
+            "effort_lag" => self.lag(effect),
+            "channel_delay" => self.delay(effect),
+            _ => self.cutoff(effect),
+        }
+    }
+
+    fn coulomb(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        let (mean, offset) = match effect.form {
+            "symmetric" => (effect.value("level"), 0.0),
+            _ => {
+                let (forward, backward) = (effect.value("forward_level"), effect.value("backward_level"));
+                (0.5 * (forward + backward), 0.5 * (forward - backward))
+            }
+        };
+        self.refuse_dry_friction()?;
+        self.note_at_joint(&effect.words);
+        self.changes.set_attribute(self.model.joint, "frictionloss", &mean.to_string());
+        // MuJoCo's friction creeps below a speed that grows with this time constant; two steps is the least that it takes.
+        if self.model.resolved(self.model.joint, "solreffriction").is_none() {
+            let constant = 2.0 * self.model.timestep();
+            self.changes.set_attribute(self.model.joint, "solreffriction", &format!("{constant} 1"));
+        }
+        if offset != 0.0 {
+            let words = format!("{}: the constant part of the asymmetry", effect.name);
+            self.passive_force(&words, |joint| passive_force::constant(joint, "asymmetry", -offset));
+        }
+        Ok(())
+    }
+
+    /// Two dry frictions would add up.
+    fn refuse_dry_friction(&self) -> Result<(), InputError> {
+        let before = self.model.joint_number("frictionloss");
+        if before == 0.0 {
+            return Ok(());
+        }
+        let expected = "a joint without dry friction: state it in the rig file as [[effect]] coulomb_friction, then it is refitted, and take it from the model";
+        Err(InputError::new(self.model.at(self.model.joint), format!("frictionloss {before}"), expected))
+    }
+
+    fn stribeck(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        self.refuse_dry_friction()?;
+        let coulomb = effect.value("level");
+        let law = Bristles {
+            coulomb,
+            breakaway: coulomb + effect.value("breakaway_excess"),
+            stribeck_speed: effect.value("stribeck_speed"),
+            inertia: self.export.rig.drive.map_or(1.0, |drive| drive.inertia),
+        };
+        self.passive_force(&effect.words, |joint| passive_force::bristles(joint, "friction", law));
+        Ok(())
+    }
+
+    /// A load is positive against the joint.
+    fn gravity(&mut self, effect: &FoundEffect) {
+        let (sine, cosine, load) = (-effect.value("sine"), -effect.value("cosine"), -effect.value("load"));
+        match effect.form {
+            "constant" => self.passive_force(&effect.words, |joint| passive_force::constant(joint, "load", load)),
+            "by_angle" => {
+                self.passive_force(&effect.words, |joint| passive_force::wave(joint, "weight", 1.0, sine, cosine));
+                self.passive_force(&effect.words, |joint| passive_force::constant(joint, "load", load));
+            }
+            _ => {
+                let k = std::f64::consts::TAU / effect.value("length");
+                self.passive_force(&effect.words, |joint| passive_force::wave(joint, "load", k, sine, cosine));
+            }
+        }
+    }
+
+    fn cogging(&mut self, effect: &FoundEffect) {
+        let k = std::f64::consts::TAU / effect.value("pitch");
+        let (sine, cosine) = (-effect.value("sine"), -effect.value("cosine"));
+        self.passive_force(&effect.words, |joint| passive_force::wave(joint, "cogging", k, sine, cosine));
+        if effect.form == "two_harmonics" {
+            let (sine, cosine) = (-effect.value("second_sine"), -effect.value("second_cosine"));
+            self.passive_force(&effect.words, |joint| passive_force::wave(joint, "cogging_2", 2.0 * k, sine, cosine));
+        }
+    }
+
+    fn play(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        let half = 0.5 * effect.value("gap");
+        let rotary = self.export.rig.coordinate == crate::rig::Coordinate::Rotary;
+        let half = if rotary { half / self.model.angle_unit() } else { half };
+        // The least that MuJoCo takes: as hard as the step allows.
+        let hard = 2.0 * self.model.timestep();
+        self.second_joint(
+            effect,
+            "play",
+            &format!("limited=\"true\" range=\"{} {half}\" solreflimit=\"{hard} 1\"", -half),
+        )
+    }
+
+    fn link(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        let (inertia, viscous) = self.export.rig.drive.map_or((1.0, 0.0), |drive| (drive.inertia, drive.viscous));
+        let stiffness = effect.value("link_stiffness");
+        let damping = 2.0 * effect.value("damping_ratio") * (stiffness * effect.value("motor_share") * inertia).sqrt();
+        let share = if effect.form == "friction_on_both_sides" { effect.value("friction_share") } else { 0.0 };
+        if share < 1.0 {
+            let words = format!(
+                "{}: {} of the damping acts beyond the link; all of it is at the motor here",
+                effect.name,
+                short((1.0 - share) * viscous)
+            );
+            self.notes.push(words);
+        }
+        self.second_joint(effect, "link", &format!("stiffness=\"{stiffness}\" damping=\"{damping}\""))
+    }
+
+    /// A joint in series with the user's, which becomes the motor's; what the motor moves by itself is its armature.
+    fn second_joint(&mut self, effect: &FoundEffect, name: &str, attributes: &str) -> Result<(), InputError> {
+        let joint = self.model.joint;
+        let new = format!("{}_{name}", self.model.name);
+        if self.model.root.descendants().any(|node| node.has_tag_name("joint") && node.attribute("name") == Some(&new))
+        {
+            return Err(InputError::new(
+                self.model.at(joint),
+                format!("the joint {new} already"),
+                "a model without it",
+            ));
+        }
+        let copied: String = ["type", "axis", "pos"]
+            .into_iter()
+            .filter_map(|key| Some(format!(" {key}=\"{}\"", self.model.resolved(joint, key)?)))
+            .collect();
+        // Nothing of the user's defaults may reach the new joint.
+        let plain = "armature=\"0\" frictionloss=\"0\" ref=\"0\"";
+        let damping = if attributes.contains("damping") { "" } else { " damping=\"0\"" };
+        let stiffness = if attributes.contains("stiffness") { "" } else { " stiffness=\"0\"" };
+        self.note_at_joint(&effect.words);
+        self.changes
+            .line_after(joint, &format!("<joint name=\"{new}\"{copied} {plain}{damping}{stiffness} {attributes}/>"));
+        let inertia = self.export.rig.drive.map_or(0.0, |drive| drive.inertia);
+        let motor = effect.value("motor_share") * inertia;
+        self.changes.set_attribute(joint, "armature", &motor.to_string());
+        let unit = self.export.rig.coordinate.inertia_unit();
+        self.notes.push(format!(
+            "{} is the motor's side now, with an armature of {} {unit}; the bodies beyond it have to hold the other {} {unit}. The tool's \
+             position is {} + {new}.",
+            self.model.name,
+            short(motor),
+            short(inertia - motor),
+            self.model.name
+        ));
+        Ok(())
+    }
+
+    fn saturation(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        let actuator = self.model.actuator(self.export.args.actuator.as_deref())?;
+        if let Some(range) = self.model.resolved(actuator, "forcerange") {
+            let found = format!("forcerange {range}");
+            return Err(InputError::new(
+                self.model.at(actuator),
+                found,
+                "an actuator without a limit: state it in the rig file as [[effect]] effort_saturation",
+            ));
+        }
+        let limit = effect.value("limit") / self.gear(actuator);
+        self.note_before(actuator, &effect.words);
+        self.changes.set_attribute(actuator, "forcerange", &format!("{} {limit}", -limit));
+        self.changes.set_attribute(actuator, "forcelimited", "true");
+        Ok(())
+    }
+
+    /// Force at the joint for one of the actuator.
+    fn gear(&self, actuator: roxmltree::Node<'_, '_>) -> f64 {
+        let gear = actuator.attribute("gear").and_then(|gear| gear.split_whitespace().next()?.parse::<f64>().ok());
+        gear.filter(|gear| *gear != 0.0).map_or(1.0, f64::abs)
+    }
+
+    fn lag(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        let actuator = self.model.actuator(self.export.args.actuator.as_deref())?;
+        let kind = actuator.tag_name().name();
+        let dynamics = self.model.resolved(actuator, "dyntype").filter(|kind| *kind != "none");
+        if !FORCE_ACTUATORS.contains(&kind) || dynamics.is_some() {
+            let found = dynamics.map_or_else(|| format!("a {kind} actuator"), |dynamics| format!("dyntype {dynamics}"));
+            return Err(InputError::new(
+                self.model.at(actuator),
+                found,
+                "a motor, or a general actuator without dynamics: the lag is one of the force",
+            ));
+        }
+        self.note_before(actuator, &effect.words);
+        if kind == "motor" {
+            self.changes.rename(actuator, "general");
+        }
+        self.changes.set_attribute(actuator, "dyntype", "filterexact");
+        self.changes.set_attribute(actuator, "dynprm", &effect.value("time_constant").to_string());
+        Ok(())
+    }
+
+    fn delay(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        let sensor = self.model.sensor(self.export.args.sensor.as_deref())?;
+        let delay = effect.value("delay");
+        self.refuse_attribute(sensor, "delay")?;
+        self.note_before(sensor, &effect.words);
+        let samples = (delay / self.model.timestep()).ceil() as usize + 2;
+        self.changes.set_attribute(sensor, "delay", &delay.to_string());
+        self.changes.set_attribute(sensor, "nsample", &samples.to_string());
+        self.changes.set_attribute(sensor, "interp", "linear");
+        Ok(())
+    }
+
+    fn cutoff(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
+        let sensor = self.model.sensor(self.export.args.sensor.as_deref())?;
+        self.refuse_attribute(sensor, "cutoff")?;
+        self.note_before(sensor, &effect.words);
+        self.changes.set_attribute(sensor, "cutoff", &effect.value("limit").to_string());
+        Ok(())
+    }
+
+    fn refuse_attribute(&self, node: roxmltree::Node<'_, '_>, attribute: &str) -> Result<(), InputError> {
+        match node.attribute(attribute) {
+            None => Ok(()),
+            Some(value) => Err(InputError::new(
+                self.model.at(node),
+                format!("{attribute} {value}"),
+                format!("a sensor without {attribute}"),
+            )),
+        }
+    }
+
+    fn passive_force(&mut self, words: &str, element: impl FnOnce(&str) -> String) {
+        let line = comment(&format!("palpate: {words}; from {}", self.export.source));
+        self.passive.push(line);
+        self.passive.push(element(&self.model.name));
+    }
+
+    fn passive_actuators(&mut self) {
+        if self.passive.is_empty() {
+            return;
+        }
+        match self.model.root.children().filter(|node| node.has_tag_name("actuator")).next_back() {
+            Some(actuators) => self.changes.append(actuators, &self.passive),
+            None => {
+                let lines: Vec<String> = std::iter::once("<actuator>".to_owned())
+                    .chain(self.passive.iter().map(|line| format!("  {line}")))
+                    .chain(["</actuator>".to_owned()])
+                    .collect();
+                self.changes.append(self.model.root, &lines);
+            }
+        }
+    }
+
+    fn note_at_joint(&mut self, words: &str) {
+        self.note_before(self.model.joint, words);
+    }
+
+    fn note_before(&mut self, node: roxmltree::Node<'_, '_>, words: &str) {
+        self.changes.line_before(node, &comment(&format!("palpate: {words}; from {}", self.export.source)));
+    }
+}
