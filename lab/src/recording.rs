@@ -2,6 +2,7 @@
 
 mod assemble;
 mod columns;
+mod computed_effort;
 mod csv_table;
 pub mod data_file;
 pub mod format;
@@ -34,7 +35,7 @@ pub struct Recording {
     pub velocity: Option<Vec<f64>>,
     /// Contact force, positive when the tool pushes.
     pub force: Option<Vec<f64>>,
-    /// Drive effort at the tool.
+    /// Drive effort at the tool: recorded, or computed as the rig's `[effort]` says.
     pub effort: Option<Vec<f64>>,
     /// Commanded position.
     pub reference: Option<Vec<f64>>,

@@ -1,6 +1,7 @@
 //! The rig: the user's simulation of the test bed, as values with one name each whatever the coordinate.
 
 mod coordinate;
+mod effort_law;
 mod read;
 mod table;
 mod words;
@@ -11,6 +12,7 @@ use std::path::Path;
 use crate::error::InputError;
 use crate::outfile::OutFile;
 pub use coordinate::{Coordinate, Word};
+pub use effort_law::{EffortLaw, MotorInput};
 pub use table::nearest;
 
 /// A rig file. SI units; in a rotary rig read torque for force, inertia for mass, radian for metre.
@@ -24,6 +26,8 @@ pub struct Rig {
     pub columns: Columns,
     /// `[drive]`, `None` where there is no effort.
     pub drive: Option<Drive>,
+    /// `[effort]`: how the effort arises, for recordings that hold none.
+    pub effort: Option<EffortLaw>,
     /// `[contact]`, `None` where there is no force.
     pub contact: Option<Contact>,
     /// `[sensors]`.

@@ -198,3 +198,60 @@ fn a_recording_survives_writing_to_the_bit() {
     let error = recording.write(folder.path(), &Rig::default()).unwrap_err().to_string();
     says(&error, &["found a folder"]);
 }
+
+const MOTOR: &str = "[drive]\nmass_kg = 1\nviscous_n_s_m = 0\n[effort]\n";
+
+/// Position t^2, so that the velocity is 2 t; current, voltage and duty of 3 t, 0.1 t and t / 100.
+fn motor_trial() -> String {
+    let row = |k: u32| {
+        let t = f64::from(k) * 0.01;
+        format!("{t},{},{},{},{},{}\n", t * t, 3.0 * t, 0.1 * t, 0.01 * t, t * t + 0.5 * t)
+    };
+    "t_s,position_m,current_A,voltage_V,duty,reference_m\n".to_owned() + &(0..100).map(row).collect::<String>()
+}
+
+#[test]
+fn an_effort_that_is_not_recorded_is_computed_as_the_rig_says() {
+    let effort = |table: &str| {
+        let recording = read(motor_trial(), &format!("{LINEAR}{MOTOR}{table}")).unwrap();
+        (recording.time, recording.effort.unwrap())
+    };
+    let is = |table: &str, wanted: fn(f64) -> f64| {
+        let (time, effort) = effort(table);
+        for (t, effort) in time.into_iter().zip(effort).skip(1).take(98) {
+            assert!((effort - wanted(t)).abs() < 1e-9, "{table}: {effort} at {t} s, not {}", wanted(t));
+        }
+    };
+    is("model = \"current\"\nmotor_constant_n_a = -2", |t| -6.0 * t);
+    is("model = \"voltage\"\nmotor_constant_n_a = 2\nback_emf_v_s_m = 0.3\nresistance_ohm = 0.5", |t| {
+        2.0 * (0.1 - 0.6) * t / 0.5
+    });
+    is("model = \"duty\"\nsupply_v = 10\nmotor_constant_n_a = 2\nback_emf_v_s_m = 0.3\nresistance_ohm = 0.5", |t| {
+        2.0 * (0.1 - 0.6) * t / 0.5
+    });
+    is("model = \"pd\"\nproportional_n_m = 4\nderivative_n_s_m = 3", |t| 4.0 * 0.5 * t + 3.0 * 0.5);
+    is("model = \"current\"\nmotor_constant_n_a = 2\ncolumn = \"voltage_V\"", |t| 0.2 * t);
+    // A recorded effort is taken as it stands.
+    let recorded = motor_trial().replace("duty", "effort_N");
+    let recording = read(recorded, &format!("{LINEAR}{MOTOR}model = \"current\"\nmotor_constant_n_a = 2")).unwrap();
+    assert!((recording.effort.unwrap()[50] - 0.005).abs() < 1e-12);
+}
+
+#[test]
+fn an_effort_law_survives_writing_and_its_faults_are_named() {
+    for table in [
+        "model = \"duty\"\nsupply_v = 10\nmotor_constant_n_a = 2\nback_emf_v_s_m = 0.3\nresistance_ohm = 0.5\ncolumn = \"pwm\"",
+        "model = \"pd\"\nproportional_n_m = 4\nderivative_n_s_m = 3",
+    ] {
+        let first = rig(&format!("{LINEAR}{MOTOR}{table}"));
+        assert_eq!(Rig::parse(&first.to_toml(), "again").unwrap(), first, "{}", first.to_toml());
+    }
+    let error = |table: &str| rig_error(&format!("{LINEAR}{MOTOR}{table}"));
+    says(&error("model = \"torque\""), &["[effort] model", "torque", "\"pd\""]);
+    says(&error("model = \"voltage\"\nmotor_constant_n_a = 2\nback_emf_v_s_m = 1"), &["resistance_ohm", "nothing"]);
+    says(&error("model = \"current\"\nmotor_constant_n_a = 2\nsupply_v = 3"), &["supply_v", "unknown key"]);
+    let law = format!("{LINEAR}{MOTOR}model = \"current\"\nmotor_constant_n_a = 2\ncolumn = \"curent_A\"");
+    says(&read(motor_trial(), &law).unwrap_err(), &["curent_A", "perhaps current_A", "[effort]"]);
+    let law = format!("{LINEAR}{MOTOR}model = \"pd\"\nproportional_n_m = 4\nderivative_n_s_m = 3");
+    says(&read(motor_trial().replace("reference_m", "r"), &law).unwrap_err(), &["reference_m", "[effort]"]);
+}

@@ -1,8 +1,8 @@
 //! From the channels of a file to a [`Recording`], by the names in the rig file.
 
-use super::Recording;
 use super::columns::{self, Role};
 use super::data_file::{Channel, Content, DataFile};
+use super::{Recording, computed_effort};
 use crate::error::InputError;
 use crate::rig::Rig;
 
@@ -20,7 +20,7 @@ pub fn recording(file: DataFile, place: &str, name: String, rig: &Rig) -> Result
     let series =
         found.iter().map(|(role, at)| Series::of(place, *role, &file.channels[*at])).collect::<Result<Vec<_>, _>>()?;
     let recording = if has_clocks { resampled(place, series)? } else { aligned(place, series)? };
-    let recording = Recording { name, ..into_recording(recording) };
+    let recording = Recording { name, ..into_recording(recording, rig) };
     increasing(place, &recording.time)?;
     Ok(recording)
 }
@@ -126,9 +126,10 @@ fn increasing(place: &str, time: &[f64]) -> Result<(), InputError> {
     }
 }
 
-/// The channels in their places.
-pub fn into_recording(channels: Vec<(Role, Vec<f64>)>) -> Recording {
+/// The channels in their places, and the effort from the motor's input or the control law where the rig says how.
+pub fn into_recording(channels: Vec<(Role, Vec<f64>)>, rig: &Rig) -> Recording {
     let mut recording = Recording::default();
+    let mut input = None;
     for (role, values) in channels {
         match role {
             Role::Time => recording.time = values,
@@ -138,7 +139,13 @@ pub fn into_recording(channels: Vec<(Role, Vec<f64>)>) -> Recording {
             Role::Effort => recording.effort = Some(values),
             Role::Reference => recording.reference = Some(values),
             Role::Load => recording.load = Some(values),
+            Role::MotorInput => input = Some(values),
         }
+    }
+    if recording.effort.is_none()
+        && let Some(law) = &rig.effort
+    {
+        recording.effort = computed_effort::effort(law, &recording, input.as_deref());
     }
     recording
 }

@@ -13,6 +13,8 @@ pub enum Role {
     Effort,
     Reference,
     Load,
+    /// Current, voltage or duty, from which the rig's `[effort]` computes the effort.
+    MotorInput,
 }
 
 impl Role {
@@ -29,6 +31,7 @@ impl Role {
             Self::Effort => Word::new("effort_N", "effort_Nm"),
             Self::Reference => Word::new("reference_m", "reference_rad"),
             Self::Load => Word::new("load_N", "load_Nm"),
+            Self::MotorInput => Word::same("current_A"),
         }
     }
 
@@ -46,6 +49,8 @@ impl Role {
             Self::Effort => &columns.effort,
             Self::Reference => &columns.reference,
             Self::Load => &columns.load,
+            // Named in [effort].
+            Self::MotorInput => &None,
         }
         .as_deref()
     }
@@ -67,7 +72,18 @@ pub fn find(header: &[&str], rig: &Rig, place: &str, has_clocks: bool) -> Result
         }
     }
     let has = |wanted| found.iter().any(|(role, _)| *role == wanted);
-    if !has(Role::Force) && !has(Role::Effort) {
+    if let Some(law) = rig.effort.as_ref().filter(|_| !has(Role::Effort)) {
+        if let Some((_, name)) = law.input() {
+            let at = header
+                .iter()
+                .position(|column| *column == name)
+                .ok_or_else(|| missing(name, header, "[effort] in the rig file names it", place))?;
+            found.push((Role::MotorInput, at));
+        } else if !has(Role::Reference) {
+            let source = "[effort] in the rig file computes the effort from it";
+            return Err(missing(Role::Reference.name(rig), header, source, place));
+        }
+    } else if !has(Role::Force) && !has(Role::Effort) {
         let name = |role: Role| rig.coordinate.pick(role.default_name());
         let both = format!("{} or {} (or [columns] in the rig file)", name(Role::Force), name(Role::Effort));
         return Err(InputError::new(place, there(header), both));
@@ -96,13 +112,17 @@ fn column(role: Role, header: &[&str], rig: &Rig, place: &str) -> Result<Option<
                 return Err(InputError::new(format!("{place}: column {name}"), found, expected));
             }
             let optional = given.is_none() && !matches!(role, Role::Time | Role::Position);
-            if optional { Ok(None) } else { Err(missing(name, header, given.is_some(), place)) }
+            let source = if given.is_some() {
+                "[columns] in the rig file names it"
+            } else {
+                "or its name in [columns] of the rig file"
+            };
+            if optional { Ok(None) } else { Err(missing(name, header, source, place)) }
         }
     }
 }
 
-fn missing(name: &str, header: &[&str], given: bool, place: &str) -> InputError {
-    let source = if given { "[columns] in the rig file names it" } else { "or its name in [columns] of the rig file" };
+fn missing(name: &str, header: &[&str], source: &str, place: &str) -> InputError {
     let expected = match nearest(name, header) {
         Some(near) => format!("{name} (perhaps {near} is meant; {source})"),
         None => format!("{name} ({source})"),

@@ -60,7 +60,7 @@ impl File<'_> {
             let found = if rows == 0 { "a header and no rows" } else { "a header and a single row" };
             return Err(InputError::new(&self.place, found, "at least two rows of numbers"));
         }
-        Ok(channels.into_recording(name))
+        Ok(channels.into_recording(name, rig))
     }
 
     fn refuse_other_text(&self) -> Result<(), InputError> {
@@ -118,9 +118,9 @@ impl File<'_> {
 }
 
 impl Channels {
-    fn into_recording(self, name: String) -> Recording {
+    fn into_recording(self, name: String, rig: &Rig) -> Recording {
         let channels = self.found.into_iter().zip(self.values).map(|((role, _), values)| (role, values)).collect();
-        Recording { name, ..assemble::into_recording(channels) }
+        Recording { name, ..assemble::into_recording(channels, rig) }
     }
 }
 

@@ -18,6 +18,7 @@ pub fn rig(text: &str, origin: &str) -> Result<Rig, InputError> {
         coordinate,
         columns: columns(table("columns")?)?,
         drive: drive(table("drive")?)?,
+        effort: super::effort_law::read(table("effort")?)?,
         contact: contact(table("contact")?)?,
         sensors: sensors(table("sensors")?)?,
         control: control(table("control")?)?,

@@ -47,6 +47,12 @@ fn nominal(page: &mut Page, rig: &Rig) {
             ],
         );
     }
+    if let Some(law) = &rig.effort {
+        let column = law.input().map(|(_, column)| quoted(column));
+        let constants = law.constants().map(|(key, value)| (key, value.and_then(number)));
+        let rows = [(words::MODEL, Some(quoted(law.name()))), (words::COLUMN, column)];
+        page.table("effort", &rows.into_iter().chain(constants).collect::<Vec<_>>());
+    }
     if let Some(contact) = rig.contact {
         page.table(
             "contact",
