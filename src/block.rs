@@ -4,7 +4,7 @@
 //! law  ->  criterion (least squares, least mean square, least mean fourth)
 //!   |          |
 //!   +----------+-->  sums of a window: of second order, of fourth order
-//!                      kept by two stacks, by compensated sums, or summed at each sample (`direct`)
+//!                      kept in exact sums, in compensated sums, or summed at each sample (`direct`)
 //! ```
 
 mod adaptive_window;
@@ -12,14 +12,15 @@ mod compensated_sums;
 mod config;
 pub mod direct;
 mod direct_least_mean_fourth;
+mod exact_sums;
 mod fourth_order;
+mod integer_sums;
 mod law;
 mod least_mean_fourth;
 mod least_mean_square;
 mod least_squares;
 mod second_order;
 mod solution;
-mod two_stack_aggregate;
 mod window_sums;
 
 pub use adaptive_window::{AdaptiveWindow, AdaptiveWindowConfig, AdaptiveWindowState};

@@ -83,3 +83,8 @@ pub fn nearest_power_of_two(x: f32) -> f32 {
     let exponent = (bits >> 23) + u32::from(above_root_two);
     f32::from_bits(exponent.clamp(1, 254) << 23)
 }
+
+/// The largest power of two that is at most `x`, for a normal `x` above zero.
+pub const fn power_of_two_below(x: f32) -> f32 {
+    f32::from_bits(x.to_bits() & 0x7f80_0000)
+}

@@ -56,7 +56,9 @@ impl<const N: usize> Window<N> {
     /// All samples that it holds.
     pub fn recent(&self) -> Recent<'_> {
         let (older, newer) = if self.len <= self.next {
-            (self.samples.get(self.next - self.len..self.next), None)
+            (None, self.samples.get(self.next - self.len..self.next))
+        } else if self.next == 0 {
+            (None, self.samples.get(N - self.len..))
         } else {
             (self.samples.get(N - (self.len - self.next)..), self.samples.get(..self.next))
         };
@@ -68,13 +70,14 @@ impl<const N: usize> Window<N> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recent<'a> {
     older: &'a [Observation],
+    /// Empty only where it shows none, so that the newest is always found here.
     newer: &'a [Observation],
 }
 
 impl<'a> Recent<'a> {
     /// A view of plain samples, oldest first.
     pub const fn of(samples: &'a [Observation]) -> Self {
-        Self { older: samples, newer: &[] }
+        Self { older: &[], newer: samples }
     }
 
     /// How many samples it shows.
@@ -99,7 +102,7 @@ impl<'a> Recent<'a> {
 
     /// The newest one.
     pub fn newest(&self) -> Option<Observation> {
-        self.newer.last().or(self.older.last()).copied()
+        self.newer.last().copied()
     }
 
     /// The oldest one.
@@ -111,22 +114,6 @@ impl<'a> Recent<'a> {
     pub fn before_newest(&self, count: usize) -> Option<Observation> {
         let from_end = |run: &[Observation], count: usize| run.get(run.len().checked_sub(count + 1)?).copied();
         from_end(self.newer, count).or_else(|| from_end(self.older, count.checked_sub(self.newer.len())?))
-    }
-
-    /// The one `count` after the oldest; the oldest itself where that is zero.
-    pub fn after_oldest(&self, count: usize) -> Option<Observation> {
-        self.older.get(count).or_else(|| self.newer.get(count.checked_sub(self.older.len())?)).copied()
-    }
-
-    /// The one `count` before the newest and the one before that; zero where there is none.
-    pub fn pair_before_newest(&self, count: usize) -> [Observation; 2] {
-        let pair = |run: &'a [Observation], count: usize| match run.get(..run.len().checked_sub(count)?)? {
-            [.., before, at] => Some([*at, *before]),
-            _ => None,
-        };
-        pair(self.newer, count)
-            .or_else(|| pair(self.older, count.checked_sub(self.newer.len())?))
-            .unwrap_or_else(|| [count, count + 1].map(|count| self.before_newest(count).unwrap_or_default()))
     }
 
     /// Calls `visit` on each, oldest first.

@@ -1,10 +1,9 @@
 //! Block least squares over a window that is shortened where the material has changed.
 
 use crate::block::config::BlockConfig;
+use crate::block::exact_sums::ExactSums;
 use crate::block::law::BlockState;
 use crate::block::least_squares::BlockLeastSquares;
-use crate::block::second_order::SecondOrderSums;
-use crate::block::two_stack_aggregate::TwoStackAggregate;
 use crate::change_detector::{ChangeConfig, ChangeState};
 use crate::error::{ConfigError, require};
 use crate::prior::Prior;
@@ -56,7 +55,7 @@ pub struct AdaptiveWindow {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdaptiveWindowState {
     /// Of the block law.
-    pub block: BlockState<TwoStackAggregate<SecondOrderSums>>,
+    pub block: BlockState<ExactSums>,
     change: ChangeState,
     length: u16,
 }

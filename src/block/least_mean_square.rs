@@ -3,10 +3,10 @@
 use core::marker::PhantomData;
 
 use crate::block::config::BlockConfig;
+use crate::block::exact_sums::ExactSums;
 use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
 use crate::block::second_order::SecondOrderSums;
-use crate::block::two_stack_aggregate::TwoStackAggregate;
 use crate::block::window_sums::WindowSums;
 use crate::contact::Impedance;
 use crate::error::ConfigError;
@@ -19,7 +19,7 @@ use crate::quality::Flags;
 /// Without the length of g, and in one pass, that is `theta += (d'd / d'Rd) d` with `d = sum phi e`, `R = sum phi phi'`.
 ///
 /// An update costs the same at any window.
-pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<TwoStackAggregate<SecondOrderSums>>>;
+pub type BlockLeastMeanSquare = BlockLaw<LeastMeanSquare<ExactSums>>;
 
 /// `sum (F - phi' theta)^2`, descended by one step a sample.
 #[derive(Debug, Clone, Copy)]

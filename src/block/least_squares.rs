@@ -3,10 +3,9 @@
 use core::marker::PhantomData;
 
 use crate::block::config::BlockConfig;
+use crate::block::exact_sums::ExactSums;
 use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
-use crate::block::second_order::SecondOrderSums;
-use crate::block::two_stack_aggregate::TwoStackAggregate;
 use crate::block::window_sums::WindowSums;
 use crate::error::ConfigError;
 
@@ -16,7 +15,7 @@ use crate::error::ConfigError;
 /// rounding. Where penetration and rate are in line, or the tool holds still, K alone is solved for and B is held.
 ///
 /// An update costs the same at any window.
-pub type BlockLeastSquares = BlockLaw<LeastSquares<TwoStackAggregate<SecondOrderSums>>>;
+pub type BlockLeastSquares = BlockLaw<LeastSquares<ExactSums>>;
 
 /// `sum (F - phi' theta)^2`, solved outright.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,403 @@
+//! The sums of a sliding window at constant cost, without drift: sums of whole numbers, from which a sample is removed to the bit.
+//!
+//! The window is one run of samples ([`ExactRun`]) with a centre, the estimate that residuals are taken about, and a scale, the powers
+//! of two that make numbers whole. Both stay until they no longer suit.
+//!
+//! - Where the estimate has left the centre, or the samples have become small against the scale, another run is prepared beside it: every
+//!   new sample enters both, and one older sample more enters the other at each update, until it holds the window and takes the place
+//!   of the first.
+//! - A sample that does not fit the scale begins another run at once, which holds the newest samples, while the first holds the others. At
+//!   each update one sample is transferred, until the first is empty.
+
+use core::mem::replace;
+
+use crate::block::config::BlockConfig;
+use crate::block::integer_sums::{ExactRun, Scale, bits_for};
+use crate::block::second_order::{Moments, SecondOrderSums};
+use crate::block::window_sums::{CentredMoments, WindowSums};
+use crate::contact::{Impedance, Observation};
+use crate::math::sym2::Sym2;
+use crate::window::Recent;
+
+/// Window below which all samples are summed at every update, which costs no more there.
+const MIN_WINDOW: u16 = 16;
+
+/// Updates between two checks, of the centre and of the scale in turn; half a window where that is shorter.
+const CHECK_INTERVAL: u16 = 16;
+
+/// Updates until the first check: so many samples tell two unknowns.
+const FIRST_CHECK: u16 = 8;
+
+/// Share of the residual energy about the centre above which the estimate does not become the new centre.
+const MAX_REMAINING_FRACTION: f32 = 0.25;
+
+/// Share of the energy of the predicted force above which a move of the centre is no small part.
+const MAX_MOVE_FRACTION: f32 = 0.5;
+
+/// Multiple of B's own part of the right side from which on the other parts' rounding matters: 16 last digits are 1e-6 of B.
+const MAX_CANCELLATION: f32 = 16.0;
+
+/// Magnitude of a centre beyond which its residuals could leave the finite numbers.
+const MAX_CENTRE: f32 = 1e30;
+
+/// What the second run of [`ExactSums`] is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum SecondUse {
+    /// Out of use.
+    #[default]
+    Unused,
+    /// Being prepared: it holds so many of the newest samples, which the first run holds as well.
+    Prepared(u16),
+    /// It holds so many of the oldest samples, which the first run does not hold.
+    Older(u16),
+}
+
+/// The sums of a window, updated sample by sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ExactSums {
+    run: ExactRun,
+    second: ExactRun,
+    /// The sample that leaves the window next; the default sample, which is nothing, while the window fills.
+    leaving: Observation,
+    /// Whole numbers are below this power of two.
+    limit: i32,
+    second_use: SecondUse,
+    /// Samples in the window.
+    fill: u16,
+    /// Updates between two checks.
+    check_interval: u16,
+    /// The next check is that of the scale.
+    scale_is_next: bool,
+    /// Updates until the next check or the next sample of a prepared run; zero while samples are being transferred.
+    due: u16,
+}
+
+impl ExactSums {
+    /// A window that was not followed sample by sample: all of it, about `centre`.
+    fn rebuild(&mut self, config: &BlockConfig, recent: Recent<'_>, centre: Impedance) {
+        let bits = bits_for(config.window);
+        let centre = if is_moderate(centre) { centre } else { Impedance::ZERO };
+        let mut scale = Scale::initial(bits);
+        self.limit = 1 << bits;
+        if !self.sum_anew(recent, centre, &scale) {
+            recent.for_each(|o| scale = scale.coarser(o, o.residual(centre), bits));
+            self.sum_anew(recent, centre, &scale);
+        }
+        self.fill = u16::try_from(recent.len()).unwrap_or(u16::MAX);
+        self.check_interval = CHECK_INTERVAL.min(config.window / 2);
+        (self.second_use, self.due, self.scale_is_next) = (SecondUse::Unused, FIRST_CHECK, false);
+    }
+
+    /// Sums all of `recent`; whether every sample fits the scale.
+    fn sum_anew(&mut self, recent: Recent<'_>, centre: Impedance, scale: &Scale) -> bool {
+        self.run.restart(centre, scale);
+        let (mut fits, mut odd) = (true, None);
+        recent.for_each(|o| match odd.take() {
+            Some(before) => fits &= self.run.add(&before, o, self.limit),
+            None => odd = Some(*o),
+        });
+        fits & self.run.add(&odd.unwrap_or_default(), &Observation::default(), self.limit)
+    }
+
+    fn bits(&self) -> u32 {
+        self.limit.trailing_zeros()
+    }
+
+    /// An update while the window fills, or samples are being transferred, or with a sample that does not fit the scale.
+    #[cold]
+    #[inline(never)]
+    fn push_unusual(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
+        let fill = if self.fill == config.window { self.fill } else { self.fill + 1 };
+        let newest = recent.newest().unwrap_or_default();
+        if config.window < MIN_WINDOW {
+            self.run.centre = estimate;
+            return;
+        }
+        if self.fill == 0 || recent.len() != usize::from(fill) {
+            self.rebuild(config, recent, estimate);
+        } else if self.due == 0 || !self.run.replace(&newest, &self.leaving, self.limit) {
+            self.transfer(config, recent, &newest);
+        } else {
+            self.fill = fill;
+            self.due -= 1;
+            if self.due == 0 {
+                self.maintain(recent, estimate);
+            }
+        }
+        let full = self.fill == config.window;
+        self.leaving = recent.oldest().filter(|_| full).unwrap_or_default();
+    }
+
+    /// Takes in the newest sample, removes the oldest, and transfers the newest of the older run.
+    fn transfer(&mut self, config: &BlockConfig, recent: Recent<'_>, newest: &Observation) {
+        let mut older = match self.second_use {
+            SecondUse::Older(count) => count,
+            _ => {
+                let residual = newest.residual(self.run.centre);
+                self.second = self.run;
+                let scale = self.run.scale.coarser(newest, residual, self.bits());
+                self.run.restart(self.run.centre, &scale);
+                self.due = 0;
+                self.fill
+            }
+        };
+        if self.fill == config.window {
+            older -= 1;
+        } else {
+            self.fill += 1;
+        }
+        let mut transferred = Observation::default();
+        if older > 0 {
+            transferred = recent.before_newest(usize::from(self.fill - older)).unwrap_or_default();
+            older -= 1;
+        }
+        self.second.remove(&self.leaving, &transferred);
+        let fits = self.run.add(newest, &transferred, self.limit);
+        self.second_use = SecondUse::Older(older);
+        if older == 0 {
+            (self.second_use, self.due) = (SecondUse::Unused, self.check_interval);
+        }
+        if !fits {
+            // Twice within a window beyond the scale, by a factor of 128 each time.
+            self.rebuild(config, recent, self.run.centre);
+        }
+    }
+
+    /// Checks centre and scale, or prepares another run.
+    #[cold]
+    #[inline(never)]
+    fn maintain(&mut self, recent: Recent<'_>, estimate: Impedance) {
+        let newest = recent.newest().unwrap_or_default();
+        if let SecondUse::Prepared(count) = self.second_use {
+            self.prepare(recent, &newest, count);
+        } else {
+            self.check(&newest, estimate);
+        }
+    }
+
+    /// Two more samples of the run that is being prepared: the newest, and the newest of those that it does not hold.
+    fn prepare(&mut self, recent: Recent<'_>, newest: &Observation, count: u16) {
+        let is_last = count + 1 >= self.fill;
+        let older = if is_last { None } else { recent.before_newest(usize::from(count) + 1) };
+        let fits = self.second.add(newest, &older.unwrap_or_default(), self.limit);
+        (self.second_use, self.due) = (SecondUse::Prepared(count + 2), 1);
+        if count + 2 >= self.fill || !fits {
+            if fits {
+                self.run = self.second;
+            }
+            (self.second_use, self.due) = (SecondUse::Unused, self.check_interval);
+        }
+    }
+
+    /// Has another run prepared where the samples have become small against the scale, or the estimate is a better centre.
+    fn check(&mut self, newest: &Observation, estimate: Impedance) {
+        let mean_squares = |run: &ExactRun| run.mean_squares(newest, f32::from(self.fill));
+        let (mut centre, mut scale) = (None, None);
+        if self.scale_is_next {
+            scale = self.run.scale.finer(&mean_squares(&self.run), self.bits());
+        } else if is_moderate(estimate) && suits_better(estimate, &self.run) {
+            centre = Some(estimate);
+        }
+        self.scale_is_next = !self.scale_is_next;
+        self.due = self.check_interval;
+        if centre.is_some() || scale.is_some() {
+            self.second.restart(centre.unwrap_or(self.run.centre), &scale.unwrap_or(self.run.scale));
+            (self.second_use, self.due) = (SecondUse::Prepared(0), 1);
+        }
+    }
+
+    /// The sums while samples are being transferred, and of a short window.
+    #[cold]
+    #[inline(never)]
+    fn unusual_moments(&self, recent: Recent<'_>) -> SecondOrderSums {
+        if self.fill == 0 {
+            return SecondOrderSums::over(recent, self.run.centre);
+        }
+        let turn = self.run.centre.moved(-1.0, self.second.centre);
+        self.second.moments().shifted(turn).with(&self.run.moments())
+    }
+}
+
+fn is_moderate(centre: Impedance) -> bool {
+    centre.stiffness.abs() + centre.damping.abs() <= MAX_CENTRE
+}
+
+/// Whether `estimate` is to become the centre of `run`: it leaves much less of the residual, and rounding about the old centre would show.
+/// That is so where the move is no small part of the estimate, and where B has to be told from the much larger part that K has in the right
+/// side, or from columns that are nearly in line.
+fn suits_better(estimate: Impedance, run: &ExactRun) -> bool {
+    let sums = run.moments();
+    let move_to = estimate.moved(-1.0, run.centre);
+    if sums.shifted(move_to).residual_energy > MAX_REMAINING_FRACTION * sums.residual_energy {
+        return false;
+    }
+    let Sym2 { xx, xv, vv } = sums.regressors;
+    let parts = (xv * sums.residual.stiffness).abs() + (xx * sums.residual.damping).abs();
+    let own = (xx * vv - xv * xv) * estimate.damping;
+    let far = sums.regressors.quadratic(move_to) > MAX_MOVE_FRACTION * sums.regressors.quadratic(estimate);
+    far || parts > MAX_CANCELLATION * own.abs()
+}
+
+impl WindowSums for ExactSums {
+    type CentredMoments = SecondOrderSums;
+
+    #[inline(always)]
+    fn push(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
+        if self.fill == config.window && recent.len() == usize::from(config.window) && self.due > 0 {
+            let newest = recent.newest().unwrap_or_default();
+            let left = replace(&mut self.leaving, recent.oldest().unwrap_or_default());
+            if self.run.replace(&newest, &left, self.limit) {
+                self.due -= 1;
+                if self.due == 0 {
+                    self.maintain(recent, estimate);
+                }
+                return;
+            }
+            self.leaving = left;
+        }
+        self.push_unusual(config, recent, estimate);
+    }
+
+    #[inline(always)]
+    fn centred_moments(&self, recent: Recent<'_>, _: Impedance) -> CentredMoments<SecondOrderSums> {
+        let moments = if self.due > 0 { self.run.moments() } else { self.unusual_moments(recent) };
+        CentredMoments { centre: self.run.centre, moments }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::solution::Solution;
+    use crate::window::Window;
+
+    /// Uniform from -1 to 1, by a linear congruential generator.
+    struct Noise(u64);
+
+    impl Noise {
+        fn draw(&mut self) -> f32 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 40) as f32 / 8_388_608.0 - 1.0
+        }
+    }
+
+    /// Both runs summed anew over `recent`, about the centres and scales of `sums`.
+    fn anew(sums: &ExactSums, recent: Recent<'_>) -> [ExactRun; 2] {
+        let [mut run, mut second] = [sums.run, sums.second];
+        run.restart(run.centre, &sums.run.scale);
+        second.restart(second.centre, &sums.second.scale);
+        let nothing = Observation::default();
+        let mut newer = recent.len();
+        recent.for_each(|o| {
+            let (in_run, in_second) = match sums.second_use {
+                SecondUse::Unused => (true, false),
+                SecondUse::Prepared(count) => (true, newer <= usize::from(count)),
+                SecondUse::Older(count) => {
+                    (recent.len() - newer >= usize::from(count), recent.len() - newer < usize::from(count))
+                }
+            };
+            if in_run {
+                run.add(o, &nothing, sums.limit);
+            }
+            if in_second {
+                second.add(o, &nothing, sums.limit);
+            }
+            newer -= 1;
+        });
+        [run, second]
+    }
+
+    /// Follows `count` samples and compares every `stride`-th update with the window summed anew, to the bit. Returns how many runs were
+    /// prepared, and how many began at a sample that did not fit.
+    fn holds_the_window(window: u16, count: u64, stride: u64, mut next: impl FnMut(u64) -> Observation) -> [u64; 2] {
+        const RING: usize = 2048;
+        let config = BlockConfig { window, minimum_fill: 2, ..BlockConfig::default() };
+        let (mut ring, mut sums) = (Window::<RING>::new(), ExactSums::default());
+        let (mut estimate, mut begun) = (Impedance::ZERO, [0; 2]);
+        for k in 0..count {
+            ring.push(next(k));
+            let recent = ring.recent().last(window.into());
+            let before = sums.second_use;
+            sums.push(&config, recent, estimate);
+            begun[0] += u64::from(sums.second_use == SecondUse::Prepared(0));
+            begun[1] += u64::from(matches!(
+                (before, sums.second_use),
+                (SecondUse::Unused | SecondUse::Prepared(_), SecondUse::Older(_))
+            ));
+            let CentredMoments { centre, moments } = sums.centred_moments(recent, estimate);
+            let solution = Solution::of(&moments, recent.len() as f32, &config, centre);
+            estimate = centre.moved(1.0, solution.correction);
+            if k % stride == 0 {
+                let [run, second] = anew(&sums, recent);
+                assert_eq!(sums.run, run, "window {window}, update {k}");
+                assert!(
+                    sums.second_use == SecondUse::Unused || sums.second == second,
+                    "window {window}, update {k}, {:?}",
+                    sums.second_use
+                );
+            }
+        }
+        begun
+    }
+
+    /// A dithered contact whose K jumps every 1237 samples and whose scale goes from nanonewtons to meganewtons and back.
+    fn contact(scale: impl Fn(u64) -> f32) -> impl FnMut(u64) -> Observation {
+        let (mut noise, mut stiffness) = (Noise(7), 300.0);
+        move |k| {
+            if k % 1237 == 0 {
+                stiffness = 1000.0 + 900.0 * noise.draw();
+            }
+            let (x, v) = (0.01 + 0.004 * noise.draw(), 0.2 * noise.draw());
+            let force = scale(k) * (stiffness * x + 5.0 * v + 0.1 * noise.draw());
+            Observation { penetration: x, rate: v, force }
+        }
+    }
+
+    #[test]
+    fn it_holds_the_window_to_the_bit_at_every_length() {
+        for window in (16..=70).chain([128, 255, 256, 257, 300, 2048]) {
+            holds_the_window(window, 6 * u64::from(window) + 100, 1, contact(|_| 1.0));
+        }
+    }
+
+    fn nano_to_mega(k: u64) -> f32 {
+        10_f32.powi([0, -9, -9, 6, 6, -3, 3, 0][(k / 700 % 8) as usize])
+    }
+
+    #[test]
+    fn it_holds_the_window_to_the_bit_from_nanonewtons_to_meganewtons() {
+        for window in [20, 50, 300] {
+            let [prepared, not_fitting] = holds_the_window(window, 20_000, 1, contact(nano_to_mega));
+            assert!(prepared > 5 && not_fitting > 2, "window {window}: {prepared}, {not_fitting}");
+        }
+    }
+
+    /// What is not a number counts as zero (a front end rejects it, and infinities); the others are the ends of a front end's range.
+    #[test]
+    fn it_holds_the_window_to_the_bit_through_the_ends_of_the_range_and_what_is_no_number() {
+        let ends = [f32::NAN, 1e6, -1e6, 1e-30, f32::MIN_POSITIVE, 0.0];
+        for window in [16, 50, 300] {
+            let (mut noise, mut sound) = (Noise(3), contact(nano_to_mega));
+            holds_the_window(window, 30_000, 1, |k| {
+                let mut end = || ends[(2.99 * (noise.draw() + 1.0)) as usize];
+                let wild = Observation { penetration: end(), rate: end(), force: end() };
+                if k % 97 == 0 || k / 500 % 9 == 3 { wild } else { sound(k) }
+            });
+            holds_the_window(window, 2_000, 1, contact(|_| 1.0));
+        }
+    }
+
+    #[test]
+    fn it_holds_the_window_to_the_bit_after_a_million_samples() {
+        holds_the_window(300, 1_000_001, 10_000, contact(|_| 1.0));
+        holds_the_window(300, 1_000_001, 10_000, contact(nano_to_mega));
+    }
+
+    /// `cargo test --release -p palpate --lib -- --ignored hundred_million`: twenty-eight hours at 1 kHz in half a minute.
+    #[test]
+    #[ignore = "1e8 samples take half a minute"]
+    fn it_holds_the_window_to_the_bit_after_a_hundred_million_samples() {
+        holds_the_window(300, 100_000_001, 100_000, contact(|_| 1.0));
+        holds_the_window(300, 100_000_001, 100_000, contact(nano_to_mega));
+    }
+}
