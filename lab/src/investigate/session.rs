@@ -13,7 +13,7 @@ use crate::diagnose::{Found, diagnose};
 use crate::experiment_design::discrimination::Noise;
 use crate::experiment_design::explanation::explanations;
 use crate::experiment_design::loop_model::LoopModel;
-use crate::experiment_design::planner::Situation;
+use crate::experiment_design::planner::{LEAST_NEW_STATES, Situation};
 use crate::experiment_design::{Explanation, Limits, Plan, Question, plan};
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
@@ -74,8 +74,10 @@ impl Session<'_> {
             }
             (self.say)("designing the next trial");
             let ease = ease(investigation);
-            let Some(plan) = self.plan(&standing, &investigation.setup.limits, ease) else {
-                investigation.outcome = Some(Outcome::NothingMore);
+            let closed = is_confirmed(investigation, &standing);
+            let plan = self.plan(&standing, &investigation.setup.limits, ease);
+            let Some(plan) = plan.filter(|plan| !closed || plan.new_states >= LEAST_NEW_STATES) else {
+                investigation.outcome = Some(if closed { Outcome::Decided } else { Outcome::NothingMore });
                 break;
             };
             let number = investigation.rounds.len() as u64;
@@ -176,15 +178,9 @@ impl Session<'_> {
         if rounds.len() >= 2 && rounds[rounds.len() - 2..].iter().all(failed) {
             return Some(Outcome::BedFailed);
         }
-        let found = standing.found.as_ref();
-        let unknown = found.is_none_or(|found| has_unknown(&found.answer) || !found.answer.alternatives.is_empty());
-        // An answer counts once a trial that was made against it has left it as it was.
-        let states: Vec<&State> = rounds.iter().filter_map(|round| round.state.as_ref()).collect();
-        let confirmed = matches!(states.as_slice(), [.., before, now] if before.physics == now.physics);
-        if confirmed && !unknown && standing.questions.is_empty() {
-            return Some(Outcome::Decided);
-        }
-        (rounds.len() as u64 > self.rounds).then_some(Outcome::RoundsSpent)
+        let spent = rounds.len() as u64 > self.rounds;
+        let closed = is_confirmed(investigation, standing);
+        spent.then_some(if closed { Outcome::Decided } else { Outcome::RoundsSpent })
     }
 
     fn plan(&self, standing: &Standing, limits: &Limits, ease: f64) -> Option<Plan> {
@@ -280,6 +276,14 @@ impl Session<'_> {
         }
         faults
     }
+}
+
+/// Whether nothing is open, and a trial that was made against the answer has left it as it was.
+fn is_confirmed(investigation: &Investigation, standing: &Standing) -> bool {
+    let Some(found) = &standing.found else { return false };
+    let open = has_unknown(&found.answer) || !found.answer.alternatives.is_empty() || !standing.questions.is_empty();
+    let states: Vec<&State> = investigation.rounds.iter().filter_map(|round| round.state.as_ref()).collect();
+    !open && matches!(states.as_slice(), [.., before, now] if before.physics == now.physics)
 }
 
 /// Where the recording of round `number` is.

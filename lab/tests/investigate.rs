@@ -1,0 +1,7 @@
+//! `palpate investigate` as a user runs it, and its parts on rigs alone.
+
+mod investigate {
+    mod command_line;
+    mod design;
+    mod simulated_bed;
+}
