@@ -5,6 +5,7 @@ use crate::framing::{LinkCounters, Receiver};
 use crate::input::{INPUT_BYTES, Input};
 use crate::link::{Command, FEED, Request, Source, Streams};
 use crate::settings::Settings;
+use crate::trajectory::{POINTS, TrajectoryConfig};
 
 /// What a request comes down to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +30,14 @@ pub enum DecodedRequest {
     Source(Source),
     /// Inputs, the first so many.
     Feed([Input; FEED], usize),
+    /// A trajectory to be prepared; whether it can be is seen then.
+    Prepare(TrajectoryConfig),
+    /// References, the first so many.
+    Points([f32; POINTS], usize),
+    /// Begin to follow, or end.
+    Follow(bool),
+    /// Where the trajectory stands.
+    Trajectory,
 }
 
 /// Decodes the bytes of the line.
@@ -81,6 +90,10 @@ fn decoded(command: &Command<'_>) -> Option<DecodedRequest> {
         Command::Stream(streams) => DecodedRequest::Stream(streams),
         Command::Source(source) => DecodedRequest::Source(source),
         Command::Feed(bytes) => return feed(bytes),
+        Command::Prepare(config) => DecodedRequest::Prepare(config),
+        Command::Points(bytes) => return points(bytes),
+        Command::Follow(begin) => DecodedRequest::Follow(begin),
+        Command::Trajectory => DecodedRequest::Trajectory,
     })
 }
 
@@ -90,4 +103,12 @@ fn feed(bytes: &[u8]) -> Option<DecodedRequest> {
     let mut inputs = [Input::NOTHING; FEED];
     inputs.iter_mut().zip(whole).for_each(|(to, from)| *to = Input::from(*from));
     fits.then_some(DecodedRequest::Feed(inputs, whole.len()))
+}
+
+fn points(bytes: &[u8]) -> Option<DecodedRequest> {
+    let (whole, rest) = bytes.as_chunks::<4>();
+    let fits = rest.is_empty() && (1..=POINTS).contains(&whole.len());
+    let mut points = [0.0; POINTS];
+    points.iter_mut().zip(whole).for_each(|(to, from)| *to = f32::from_le_bytes(*from));
+    fits.then_some(DecodedRequest::Points(points, whole.len()))
 }

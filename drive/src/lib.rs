@@ -36,6 +36,7 @@ mod quadrature;
 pub mod replay_format;
 mod settings;
 mod tare;
+mod trajectory;
 
 pub use bus::{BoundedSpi, BusFault};
 pub use calibration::{CALIBRATION_BYTES, Calibration, CalibrationFault, PositionSensor, Scale};
@@ -48,6 +49,7 @@ pub use faults::Faults;
 pub use input::{INPUT_BYTES, Input, InputStatus};
 pub use quadrature::{EncoderCounter, Quadrature};
 pub use settings::Settings;
+pub use trajectory::{POINTS, StopReason, TrajectoryConfig, TrajectoryFollower, TrajectoryState, TrajectoryStatus};
 
 /// Ticks of the interrupt in a second.
 pub const TICK_HZ: u16 = 1_000;

@@ -11,6 +11,7 @@ use crate::faults::Faults;
 use crate::framing::LinkCounters;
 use crate::input::Input;
 use crate::settings::Settings;
+use crate::trajectory::{TrajectoryConfig, TrajectoryStatus};
 use palpate::Estimate;
 use palpate::Flags;
 use palpate::Impedance;
@@ -51,6 +52,14 @@ pub enum Command<'a> {
     Source(Source),
     /// Inputs for [`Source::Link`], one after the other, 1 to [`FEED`] of them.
     Feed(#[serde(borrow)] &'a [u8]),
+    /// Prepare to follow a trajectory.
+    Prepare(TrajectoryConfig),
+    /// References of it, m from the surface, little-endian, one after the other, 1 to [`POINTS`](crate::POINTS) of them.
+    Points(#[serde(borrow)] &'a [u8]),
+    /// Begin to follow it, or end it.
+    Follow(bool),
+    /// Tell where it stands.
+    Trajectory,
 }
 
 /// Most inputs of one request.
@@ -107,6 +116,8 @@ pub enum Message<'a> {
     Estimate(EstimateMessage),
     /// A sample.
     Sample(SampleMessage),
+    /// Where a trajectory stands.
+    Trajectory(TrajectoryStatus),
 }
 
 /// How a request went.

@@ -12,14 +12,17 @@ use palpate_drive::link::{
 };
 use palpate_drive::{
     Bounds, Calibration, Counters, Cycle, DecodedRequest, Estimator, Faults, Input, Report, RequestDecoder, Scale,
-    Settings, ValidatedSettings,
+    Settings, TrajectoryConfig, TrajectoryFollower, TrajectoryState, ValidatedSettings,
 };
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use super::board::{self, Board};
 use super::flash;
 use super::line::{self, Line, RX_QUEUE, UartReceiver};
-use super::tick::{DROPPED, INPUTS, JOBS, Job, LATENCY, LINK_GONE, LONGEST, REPORTS, SETTINGS, STARVED, TICKS, Tick};
+use super::tick::{
+    DROPPED, INPUTS, JOBS, Job, LATENCY, LINK_GONE, LONGEST, REFERENCES, REPORTS, REQUEST_AT, SETTINGS, STARVED, TICKS,
+    Tick, trajectory_status,
+};
 
 static COUNTERS: Counters = Counters::new();
 
@@ -30,6 +33,7 @@ struct Queues {
     inputs: Queue<Input, INPUTS>,
     jobs: Queue<Job, JOBS>,
     new_settings: Queue<ValidatedSettings, SETTINGS>,
+    references: Queue<f32, REFERENCES>,
 }
 
 #[entry]
@@ -40,6 +44,7 @@ fn main() -> ! {
         inputs: Queue::new(),
         jobs: Queue::new(),
         new_settings: Queue::new(),
+        references: Queue::new(),
     };
     // Not `Option`s: their `None` is no zero, and would stand in the flash.
     static mut ESTIMATOR: MaybeUninit<Estimator> = MaybeUninit::uninit();
@@ -60,10 +65,22 @@ fn main() -> ! {
     let (feed, inputs) = QUEUES.inputs.split();
     let (jobs, todo) = QUEUES.jobs.split();
     let (new_settings, settings_to_apply) = QUEUES.new_settings.split();
+    let (points, references) = QUEUES.references.split();
     let cycle = Cycle::new(calibration, estimator, &COUNTERS, Bounds::NO_EFFORT, board.found);
     let (sensors, supply, source) = (board.sensors, board.supply, Source::Sensors);
-    let tick =
-        Tick { cycle, sensors, supply, source, jobs: todo, settings: settings_to_apply, inputs, reports, late: false };
+    let tick = Tick {
+        cycle,
+        sensors,
+        supply,
+        source,
+        jobs: todo,
+        settings: settings_to_apply,
+        inputs,
+        reports,
+        follower: TrajectoryFollower::new(),
+        references,
+        late: false,
+    };
     TICK.write(tick).hand_over();
     UART_RECEIVER.write(UartReceiver { receiver: board.receiver, received }).hand_over();
     board::start_ticking(&mut board.core);
@@ -76,6 +93,7 @@ fn main() -> ! {
         feed,
         jobs,
         new_settings,
+        points,
         calibration,
         settings,
         revision: 0,
@@ -127,6 +145,7 @@ struct Idle {
     feed: Producer<'static, Input, INPUTS>,
     jobs: Producer<'static, Job, JOBS>,
     new_settings: Producer<'static, ValidatedSettings, SETTINGS>,
+    points: Producer<'static, f32, REFERENCES>,
     calibration: Calibration,
     settings: Settings,
     revision: u8,
@@ -146,6 +165,7 @@ impl Idle {
             while let Some(byte) = self.line.received.dequeue() {
                 if let Some((number, request)) = self.decoder.push(byte) {
                     self.received_at = TICKS.load(Ordering::Relaxed);
+                    REQUEST_AT.store(self.received_at, Ordering::Relaxed);
                     let outcome = self.execute(request);
                     if outcome != RequestOutcome::Done {
                         self.decoder.refuse();
@@ -222,6 +242,10 @@ impl Idle {
                 }
                 outcome
             }
+            DecodedRequest::Prepare(config) => self.prepare(config),
+            DecodedRequest::Points(points, used) => self.add_points(points.get(..used).unwrap_or_default()),
+            DecodedRequest::Follow(begin) => self.job(Job::Follow(begin)),
+            DecodedRequest::Trajectory => self.answer(&Message::Trajectory(trajectory_status())),
             DecodedRequest::Feed(inputs, used) => self.feed(inputs.get(..used).unwrap_or_default()),
         }
     }
@@ -260,6 +284,29 @@ impl Idle {
             return RequestOutcome::NoRoom;
         }
         let taken = inputs.iter().all(|&input| self.feed.enqueue(input).is_ok());
+        if taken { RequestOutcome::Done } else { RequestOutcome::NoRoom }
+    }
+
+    /// A run goes on until it ends: another one is prepared only then.
+    fn prepare(&mut self, config: TrajectoryConfig) -> RequestOutcome {
+        if trajectory_status().state == TrajectoryState::Running {
+            return RequestOutcome::NotNow;
+        }
+        if config.check().is_err() {
+            return RequestOutcome::OutOfRange;
+        }
+        self.job(Job::Prepare(config))
+    }
+
+    /// All of the references or none, and only for a run that is prepared or goes on.
+    fn add_points(&mut self, points: &[f32]) -> RequestOutcome {
+        if !matches!(trajectory_status().state, TrajectoryState::Prepared | TrajectoryState::Running) {
+            return RequestOutcome::NotNow;
+        }
+        if self.points.capacity() - self.points.len() < points.len() {
+            return RequestOutcome::NoRoom;
+        }
+        let taken = points.iter().all(|&point| self.points.enqueue(point).is_ok());
         if taken { RequestOutcome::Done } else { RequestOutcome::NoRoom }
     }
 

@@ -7,7 +7,10 @@ use core::sync::atomic::{AtomicBool, AtomicPtr, AtomicU32, Ordering};
 use cortex_m::peripheral::{SCB, SYST};
 use heapless::spsc::{Consumer, Producer};
 use palpate_drive::link::Source;
-use palpate_drive::{Cycle, Input, InputStatus, Order, Report, ValidatedSettings};
+use palpate_drive::{
+    Cycle, Input, InputStatus, Order, Report, StopReason, TrajectoryConfig, TrajectoryFollower, TrajectoryState,
+    TrajectoryStatus, ValidatedSettings,
+};
 use stm32f4xx_hal::pac::PWR;
 
 use super::board::TICK_CYCLES;
@@ -21,6 +24,8 @@ pub const INPUTS: usize = 129;
 pub const JOBS: usize = 5;
 /// Settings that wait for the interrupt: one.
 pub const SETTINGS: usize = 2;
+/// References of a trajectory that wait for the interrupt.
+pub const REFERENCES: usize = 513;
 
 /// What the idle loop asks for.
 pub enum Job {
@@ -28,6 +33,10 @@ pub enum Job {
     Order(Order),
     /// Another source.
     Source(Source),
+    /// A trajectory, which was checked.
+    Prepare(TrajectoryConfig),
+    /// Begin to follow it, or end it.
+    Follow(bool),
 }
 
 /// What the interrupt owns.
@@ -48,6 +57,10 @@ pub struct Tick {
     pub inputs: Consumer<'static, Input, INPUTS>,
     /// Reports to the idle loop.
     pub reports: Producer<'static, Report, REPORTS>,
+    /// Follows a trajectory.
+    pub follower: TrajectoryFollower,
+    /// References of it from the link.
+    pub references: Consumer<'static, f32, REFERENCES>,
     /// The tick before had not ended when this one was due.
     pub late: bool,
 }
@@ -64,6 +77,10 @@ pub static STARVED: AtomicU32 = AtomicU32::new(0);
 pub static LATENCY: [AtomicU32; 2] = [AtomicU32::new(u32::MAX), AtomicU32::new(0)];
 /// Most cycles from the timer's zero to the interrupt's end.
 pub static LONGEST: AtomicU32 = AtomicU32::new(0);
+/// The tick of the last request: set by the idle loop.
+pub static REQUEST_AT: AtomicU32 = AtomicU32::new(0);
+/// Where the trajectory stands, and how many of its references were followed.
+pub static TRAJECTORY: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 /// The link is gone: set by the idle loop.
 pub static LINK_GONE: AtomicBool = AtomicBool::new(false);
 /// The effort for the current loop, as the bits of a number.
@@ -77,16 +94,44 @@ impl Tick {
 
     fn run(&mut self) {
         self.job();
+        // Also where time stands still for want of inputs: a host that is gone feeds none.
+        let silence = TICKS.load(Ordering::Relaxed).wrapping_sub(REQUEST_AT.load(Ordering::Relaxed));
+        self.follower.check_silence(silence);
         let Some(input) = self.input() else {
             count(&STARVED);
             EFFORT.store(0, Ordering::Relaxed);
+            self.tell_trajectory();
             return;
         };
-        let report = self.cycle.tick(input);
+        let mut report = self.cycle.tick(input);
+        self.follow(&mut report);
         EFFORT.store(report.effort.to_bits(), Ordering::Relaxed);
         if self.reports.enqueue(report).is_err() {
             count(&DROPPED);
         }
+    }
+
+    /// The effort of the trajectory, while one is followed.
+    fn follow(&mut self, report: &mut Report) {
+        if self.follower.is_running() {
+            let reference = self.references.dequeue();
+            report.effort = self.follower.update(report, reference);
+        }
+        self.tell_trajectory();
+    }
+
+    fn tell_trajectory(&self) {
+        let TrajectoryStatus { state, played } = self.follower.status();
+        TRAJECTORY[0].store(code(state), Ordering::Relaxed);
+        TRAJECTORY[1].store(played, Ordering::Relaxed);
+    }
+
+    /// Forgets the references of an earlier trajectory.
+    fn prepare(&mut self, config: TrajectoryConfig) {
+        // Bounded by the queue: nothing is put into it while a preparation waits.
+        while self.references.dequeue().is_some() {}
+        // It was checked by the idle loop; what cannot be prepares nothing.
+        let _ = self.follower.prepare(config);
     }
 
     /// One job a tick, so that the work is bounded.
@@ -100,6 +145,9 @@ impl Tick {
         match self.jobs.dequeue() {
             None => {}
             Some(Job::Order(order)) => self.cycle.order(order),
+            Some(Job::Prepare(config)) => self.prepare(config),
+            Some(Job::Follow(true)) => self.follower.start(),
+            Some(Job::Follow(false)) => self.follower.stop(StopReason::Requested),
             Some(Job::Source(source)) => {
                 self.source = source;
                 self.cycle.order(Order::Restart);
@@ -120,6 +168,41 @@ impl Tick {
         Some(input)
     }
 }
+
+/// A state as a number, for an atomic.
+fn code(state: TrajectoryState) -> u32 {
+    match state {
+        TrajectoryState::Idle => 0,
+        TrajectoryState::Prepared => 1,
+        TrajectoryState::Running => 2,
+        TrajectoryState::Finished => 3,
+        TrajectoryState::Stopped(reason) => 4 + reason as u32,
+    }
+}
+
+/// Where the trajectory stands, as the interrupt told it last.
+pub fn trajectory_status() -> TrajectoryStatus {
+    let state = match TRAJECTORY[0].load(Ordering::Relaxed) {
+        0 => TrajectoryState::Idle,
+        1 => TrajectoryState::Prepared,
+        2 => TrajectoryState::Running,
+        3 => TrajectoryState::Finished,
+        code => TrajectoryState::Stopped(REASONS.get(code as usize - 4).copied().unwrap_or(StopReason::Fault)),
+    };
+    TrajectoryStatus { state, played: TRAJECTORY[1].load(Ordering::Relaxed) }
+}
+
+/// In the order of their numbers.
+const REASONS: [StopReason; 8] = [
+    StopReason::Requested,
+    StopReason::Depth,
+    StopReason::Speed,
+    StopReason::Force,
+    StopReason::Fault,
+    StopReason::Silence,
+    StopReason::Underrun,
+    StopReason::Reference,
+];
 
 /// Only the interrupt writes these, so a load and a store are as good as a read-modify-write.
 fn count(counter: &AtomicU32) {

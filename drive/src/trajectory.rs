@@ -1,0 +1,372 @@
+//! A trajectory that the host gives: followed under position control at the tick, within limits that are checked here, on the
+//! drive itself, and ended with zero effort by whatever goes wrong.
+//!
+//! The host prepares a run ([`TrajectoryConfig`]), fills the queue with references, one a tick, starts it, and keeps the queue
+//! from running dry. effort = proportional e + derivative de/dt, e = reference - depth, de/dt behind a first-order low-pass; it
+//! never leaves the limit of the effort. Once a run has ended, for whatever reason, the effort is zero until the next start.
+
+use serde::{Deserialize, Serialize};
+
+use crate::cycle::Report;
+use crate::{Faults, TICK_HZ};
+use palpate::Sample;
+use palpate::error::{ConfigError, require, require_not_negative, require_positive};
+use palpate::math::{larger, smaller};
+
+/// Ticks between two readings of which a speed is taken.
+const SPEED_TICKS: usize = 16;
+
+/// Most references of one request.
+pub const POINTS: usize = 32;
+
+/// How a trajectory is followed, and what it must not pass.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TrajectoryConfig {
+    /// Depths that the tool must not leave, from the surface, m: least and greatest.
+    pub depth: [f32; 2],
+    /// Greatest speed, mean over 16 ticks, m/s.
+    pub speed: f32,
+    /// Greatest contact force either way, N.
+    pub force: f32,
+    /// Greatest effort either way, N.
+    pub effort: f32,
+    /// N/m.
+    pub proportional: f32,
+    /// N s/m.
+    pub derivative: f32,
+    /// Share of a new difference of the error that passes the low-pass of its rate, above 0, at most 1.
+    pub pass: f32,
+    /// References of the whole run.
+    pub length: u32,
+    /// Ticks without a request of the host after which the run ends: 10 to 2000.
+    pub timeout: u16,
+}
+
+impl TrajectoryConfig {
+    /// Whether a run can be prepared with it.
+    ///
+    /// # Errors
+    /// The value that is out of its range.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        let [least, greatest] = self.depth;
+        require(least.is_finite() && greatest.is_finite() && least < greatest, "depth", "a range")?;
+        require_positive(self.speed, "speed")?;
+        require_positive(self.force, "force")?;
+        require_positive(self.effort, "effort")?;
+        require_positive(self.proportional, "proportional")?;
+        require_not_negative(self.derivative, "derivative")?;
+        require(self.pass > 0.0 && self.pass <= 1.0, "pass", "above 0, at most 1")?;
+        require(self.length > 0, "length", "at least one reference")?;
+        require((10..=2_000).contains(&self.timeout), "timeout", "10 to 2000 ticks")
+    }
+}
+
+/// Where a run stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum TrajectoryState {
+    /// Nothing was prepared.
+    #[default]
+    Idle,
+    /// Prepared, not started: no effort.
+    Prepared,
+    /// Being followed.
+    Running,
+    /// The last reference was reached.
+    Finished,
+    /// Ended before.
+    Stopped(StopReason),
+}
+
+/// Why a run ended before its last reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum StopReason {
+    /// The host asked for it.
+    Requested,
+    /// The depth left its range.
+    Depth,
+    /// The speed passed its limit.
+    Speed,
+    /// The force passed its limit.
+    Force,
+    /// A fault of the drive, or a tick without a good sample.
+    Fault,
+    /// No request of the host for longer than the timeout.
+    Silence,
+    /// The queue of references ran dry.
+    Underrun,
+    /// A reference that is no number.
+    Reference,
+}
+
+/// Where a run stands, and how far it came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct TrajectoryStatus {
+    /// Where it stands.
+    pub state: TrajectoryState,
+    /// References that were followed.
+    pub played: u32,
+}
+
+/// Follows a trajectory, tick by tick.
+#[derive(Debug, Clone)]
+pub struct TrajectoryFollower {
+    config: Option<TrajectoryConfig>,
+    status: TrajectoryStatus,
+    /// Last error, and its rate behind the low-pass.
+    error: Option<f32>,
+    rate: f32,
+    /// The last depths, a ring, and how many of them there are.
+    depths: [f32; SPEED_TICKS],
+    taken: usize,
+}
+
+impl Default for TrajectoryFollower {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl TrajectoryFollower {
+    /// Nothing prepared.
+    pub const fn new() -> Self {
+        let status = TrajectoryStatus { state: TrajectoryState::Idle, played: 0 };
+        Self { config: None, status, error: None, rate: 0.0, depths: [0.0; SPEED_TICKS], taken: 0 }
+    }
+
+    /// Prepares a run. One that goes on is ended by it.
+    ///
+    /// # Errors
+    /// As [`TrajectoryConfig::check`]; then nothing is prepared.
+    pub fn prepare(&mut self, config: TrajectoryConfig) -> Result<(), ConfigError> {
+        *self = Self::new();
+        config.check()?;
+        self.config = Some(config);
+        self.status.state = TrajectoryState::Prepared;
+        Ok(())
+    }
+
+    /// Starts what was prepared; nothing happens where nothing is, or a run has ended.
+    pub fn start(&mut self) {
+        if self.status.state == TrajectoryState::Prepared {
+            self.status.state = TrajectoryState::Running;
+        }
+    }
+
+    /// Ends a run for `reason`: the effort is zero from this tick on.
+    pub fn stop(&mut self, reason: StopReason) {
+        if matches!(self.status.state, TrajectoryState::Running | TrajectoryState::Prepared) {
+            self.status.state = TrajectoryState::Stopped(reason);
+        }
+    }
+
+    /// Whether a reference is taken at this tick.
+    pub fn is_running(&self) -> bool {
+        self.status.state == TrajectoryState::Running
+    }
+
+    /// Where it stands.
+    pub fn status(&self) -> TrajectoryStatus {
+        self.status
+    }
+
+    /// Ends a run whose host has been silent for `ticks`.
+    pub fn check_silence(&mut self, ticks: u32) {
+        if self.config.is_some_and(|config| ticks > u32::from(config.timeout)) {
+            self.stop(StopReason::Silence);
+        }
+    }
+
+    /// The effort for the tick of `report`, `reference` being taken from the queue, m from the surface: zero unless a run goes on.
+    pub fn update(&mut self, report: &Report, reference: Option<f32>) -> f32 {
+        let Some(config) = self.config.filter(|_| self.is_running()) else { return 0.0 };
+        match self.follow(&config, report, reference) {
+            Ok(effort) => effort,
+            Err(reason) => {
+                self.stop(reason);
+                0.0
+            }
+        }
+    }
+
+    fn follow(
+        &mut self,
+        config: &TrajectoryConfig,
+        report: &Report,
+        reference: Option<f32>,
+    ) -> Result<f32, StopReason> {
+        let sample = report.sample.filter(|_| report.faults.difference(Faults::OVERRUN).is_empty());
+        let sample = sample.ok_or(StopReason::Fault)?;
+        self.check(config, sample)?;
+        if self.status.played >= config.length {
+            self.status.state = TrajectoryState::Finished;
+            return Ok(0.0);
+        }
+        let reference = reference.ok_or(StopReason::Underrun)?;
+        if !reference.is_finite() {
+            return Err(StopReason::Reference);
+        }
+        self.status.played += 1;
+        let error = reference - sample.position;
+        let difference = (error - self.error.unwrap_or(error)) * f32::from(TICK_HZ);
+        self.error = Some(error);
+        self.rate += config.pass * (difference - self.rate);
+        let wanted = config.proportional * error + config.derivative * self.rate;
+        if wanted.is_finite() {
+            Ok(larger(smaller(wanted, config.effort), -config.effort))
+        } else {
+            Err(StopReason::Reference)
+        }
+    }
+
+    /// Whether `sample` keeps the limits.
+    fn check(&mut self, config: &TrajectoryConfig, sample: Sample) -> Result<(), StopReason> {
+        let [least, greatest] = config.depth;
+        if !(least..=greatest).contains(&sample.position) {
+            return Err(StopReason::Depth);
+        }
+        // Comparisons that a value that is no number fails.
+        if !(sample.force.abs() <= config.force) {
+            return Err(StopReason::Force);
+        }
+        let place = self.taken % SPEED_TICKS;
+        let Some(oldest) = self.depths.get_mut(place) else { return Err(StopReason::Fault) };
+        let before = core::mem::replace(oldest, sample.position);
+        let is_full = self.taken >= SPEED_TICKS;
+        self.taken = if is_full { SPEED_TICKS + (self.taken + 1) % SPEED_TICKS } else { self.taken + 1 };
+        let way = (sample.position - before).abs() * f32::from(TICK_HZ) / SPEED_TICKS as f32;
+        if is_full && !(way <= config.speed) { Err(StopReason::Speed) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::{Input, Validity};
+    use palpate::Estimate;
+    use std::vec::Vec;
+
+    const CONFIG: TrajectoryConfig = TrajectoryConfig {
+        depth: [-0.02, 0.02],
+        speed: 0.2,
+        force: 5.0,
+        effort: 3.0,
+        proportional: 500.0,
+        derivative: 10.0,
+        pass: 0.5,
+        length: 200,
+        timeout: 100,
+    };
+
+    fn report(position: f32, force: f32) -> Report {
+        Report {
+            tick: 0,
+            input: Input::NOTHING,
+            sample: Some(Sample { position, force, elapsed: 1e-3 }),
+            faults: Faults::empty(),
+            validity: Validity::Live,
+            restarted: false,
+            revision: 0,
+            estimate: Estimate::UNKNOWN,
+            zero: 0.0,
+            effort: 0.0,
+        }
+    }
+
+    fn running() -> TrajectoryFollower {
+        let mut follower = TrajectoryFollower::new();
+        follower.prepare(CONFIG).unwrap();
+        follower.start();
+        follower
+    }
+
+    /// Efforts of 50 ticks at rest at 1 mm, `change` at tick 30, and why it ended.
+    fn run(change: impl Fn(&mut Report, &mut Option<f32>)) -> (Vec<f32>, TrajectoryState) {
+        let mut follower = running();
+        let efforts = (0..50)
+            .map(|tick| {
+                let (mut report, mut reference) = (report(0.001, 0.3), Some(0.002));
+                if tick == 30 {
+                    change(&mut report, &mut reference);
+                }
+                follower.update(&report, reference)
+            })
+            .collect();
+        (efforts, follower.status().state)
+    }
+
+    #[test]
+    fn it_pushes_towards_the_reference_within_the_limit_of_the_effort() {
+        let mut follower = running();
+        assert!((follower.update(&report(0.001, 0.0), Some(0.002)) - 0.5).abs() < 1e-4);
+        assert_eq!(follower.update(&report(0.001, 0.0), Some(10.0)), 3.0);
+        assert_eq!(follower.update(&report(0.001, 0.0), Some(-10.0)), -3.0);
+    }
+
+    #[test]
+    fn whatever_goes_wrong_ends_it_in_zero_effort_for_good() {
+        let (efforts, state) = run(|_, _| {});
+        assert!(efforts.iter().all(|effort| *effort > 0.0) && state == TrajectoryState::Running);
+        let stopped = |change: fn(&mut Report, &mut Option<f32>), reason: StopReason| {
+            let (efforts, state) = run(change);
+            assert!(efforts[..30].iter().all(|effort| *effort > 0.0), "{reason:?}");
+            assert!(efforts[30..].iter().all(|effort| *effort == 0.0), "{reason:?}: {efforts:?}");
+            assert_eq!(state, TrajectoryState::Stopped(reason));
+        };
+        fn sample(position: f32, force: f32) -> Option<Sample> {
+            Some(Sample { position, force, elapsed: 1e-3 })
+        }
+        stopped(|report, _| report.sample = sample(0.021, 0.0), StopReason::Depth);
+        stopped(|report, _| report.sample = sample(f32::NAN, 0.0), StopReason::Depth);
+        stopped(|report, _| report.sample = sample(0.001, -5.1), StopReason::Force);
+        stopped(|report, _| report.sample = sample(0.001, f32::NAN), StopReason::Force);
+        // 5 mm within 16 ticks are 0.31 m/s.
+        stopped(|report, _| report.sample = sample(0.006, 0.0), StopReason::Speed);
+        stopped(|report, _| report.sample = None, StopReason::Fault);
+        stopped(|report, _| report.faults = Faults::LINK_GONE, StopReason::Fault);
+        stopped(|_, reference| *reference = None, StopReason::Underrun);
+        stopped(|_, reference| *reference = Some(f32::NAN), StopReason::Reference);
+    }
+
+    #[test]
+    fn a_silent_host_ends_it_and_only_a_new_preparation_begins_anew() {
+        let mut follower = running();
+        follower.check_silence(100);
+        assert!(follower.is_running());
+        follower.check_silence(101);
+        assert_eq!(follower.status().state, TrajectoryState::Stopped(StopReason::Silence));
+        follower.start();
+        assert_eq!(follower.update(&report(0.001, 0.0), Some(0.002)), 0.0);
+        follower.prepare(CONFIG).unwrap();
+        assert_eq!(follower.update(&report(0.001, 0.0), Some(0.002)), 0.0);
+        follower.start();
+        assert!(follower.update(&report(0.001, 0.0), Some(0.002)) > 0.0);
+    }
+
+    #[test]
+    fn it_ends_behind_its_last_reference() {
+        let mut follower = running();
+        for _ in 0..200 {
+            assert!(follower.update(&report(0.001, 0.0), Some(0.002)) > 0.0);
+        }
+        assert_eq!(follower.update(&report(0.001, 0.0), Some(0.002)), 0.0);
+        assert_eq!(follower.status(), TrajectoryStatus { state: TrajectoryState::Finished, played: 200 });
+    }
+
+    #[test]
+    fn a_configuration_that_cannot_be_prepares_nothing() {
+        let mut follower = running();
+        assert!(follower.prepare(TrajectoryConfig { effort: f32::NAN, ..CONFIG }).is_err());
+        follower.start();
+        assert_eq!(follower.status().state, TrajectoryState::Idle);
+        for wrong in [
+            TrajectoryConfig { depth: [0.0, 0.0], ..CONFIG },
+            TrajectoryConfig { pass: 0.0, ..CONFIG },
+            TrajectoryConfig { timeout: 0, ..CONFIG },
+            TrajectoryConfig { length: 0, ..CONFIG },
+        ] {
+            assert!(wrong.check().is_err(), "{wrong:?}");
+        }
+    }
+}
