@@ -3,5 +3,6 @@
 mod investigate {
     mod command_line;
     mod design;
+    mod emulated_drive;
     mod simulated_bed;
 }

@@ -9,6 +9,7 @@ use clap::Args;
 use sha2::{Digest as _, Sha256};
 
 use super::command_bed::CommandBed;
+use super::emulated_drive_bed::EmulatedDriveBed;
 use super::record::{Investigation, Setup};
 use super::report;
 use super::session::{Session, default_limits};
@@ -16,8 +17,10 @@ use super::simulated_bed::SimulatedBed;
 use super::test_bed::TestBed;
 use crate::experiment_design::Limits;
 use crate::outfile::OutFile;
+use crate::qemu_drive::DriveImage;
 use crate::recording::Recording;
 use crate::rig::Rig;
+use crate::tools::Leave;
 
 /// Diagnose, design the trial that tells most, run it, and diagnose again, until one explanation is left
 #[derive(Debug, Clone, Args)]
@@ -28,8 +31,9 @@ pub struct InvestigateArgs {
     /// Recordings to begin with; without any, the first trial explores
     #[arg(value_name = "TRIAL.csv")]
     pub trials: Vec<PathBuf>,
-    /// What runs a trial: sim:HIDDEN.toml, or a command, called as COMMAND REFERENCE.csv RECORDING.csv
-    #[arg(long, value_name = "sim:FILE|COMMAND")]
+    /// What runs a trial: sim:HIDDEN.toml, a simulation; qemu:HIDDEN.toml, the same under the control of the drive image in QEMU;
+    /// or a command, called as COMMAND REFERENCE.csv RECORDING.csv
+    #[arg(long, value_name = "sim:FILE|qemu:FILE|COMMAND")]
     pub on: String,
     /// Limits of every trial; where left out, what the recordings kept
     #[arg(long, value_name = "LIMITS.toml")]
@@ -89,10 +93,14 @@ pub fn run(args: &InvestigateArgs) -> Result<()> {
 
 /// What `on` names.
 fn test_bed(on: &str, rig: &Rig, seed: u64) -> Result<Box<dyn TestBed>> {
-    Ok(match on.strip_prefix("sim:") {
-        Some(hidden) => Box::new(SimulatedBed::new(Path::new(hidden), rig, seed)?),
-        None => Box::new(CommandBed::new(on, rig)),
-    })
+    if let Some(hidden) = on.strip_prefix("sim:") {
+        return Ok(Box::new(SimulatedBed::new(Path::new(hidden), rig, seed)?));
+    }
+    if let Some(hidden) = on.strip_prefix("qemu:") {
+        let image = DriveImage::prepare(Leave::Look)?;
+        return Ok(Box::new(EmulatedDriveBed::new(Path::new(hidden), rig, seed, image, Vec::new())?));
+    }
+    Ok(Box::new(CommandBed::new(on, rig)))
 }
 
 fn sha256(path: &Path) -> Result<String> {

@@ -322,7 +322,8 @@ fn why(plan: &Plan, standing: &Standing) -> String {
     if plan.new_states >= 0.01 {
         reasons.push(format!("{:.0} % of the states in reach were not visited yet", 100.0 * plan.new_states));
     }
-    let mut text = format!("{}, because of what is open: {}", plan.motions.join("; then "), reasons.join("; "));
+    let mut text = capitalized(&plan.motions.join("; then "));
+    text.push_str(&format!(", because of what is open: {}", reasons.join("; ")));
     if unasked > 0 {
         text.push_str(&format!("; {unasked} of the open questions it does not answer within the limits"));
     }
@@ -331,6 +332,11 @@ fn why(plan: &Plan, standing: &Standing) -> String {
     }
     let names: Vec<String> = standing.explanations.iter().map(|one| words(&one.physics)).collect();
     text + &format!(". It keeps the limits with a margin under each of: {}.", names.join(", "))
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The reference as a file: `t_s` and `reference_m` or `reference_rad`.

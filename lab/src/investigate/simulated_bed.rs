@@ -21,8 +21,9 @@ const RETREAT_S: f64 = 1.0;
 /// A simulated rig.
 pub struct SimulatedBed {
     hidden: Rig,
-    origin: String,
-    seed: u64,
+    /// Names its file in errors.
+    pub(super) origin: String,
+    pub(super) seed: u64,
 }
 
 impl SimulatedBed {
@@ -44,7 +45,7 @@ impl SimulatedBed {
     }
 
     /// The hidden rig, at rest where `request` begins, its effort limited as a drive limits it.
-    fn prepared(&self, request: &TrialRequest<'_>) -> Rig {
+    pub(super) fn prepared(&self, request: &TrialRequest<'_>) -> Rig {
         let mut rig = self.hidden.clone();
         let surface = rig.surface();
         let first = request.reference.first().copied().unwrap_or(surface);
@@ -138,7 +139,7 @@ impl<'a> Supervisor<'a> {
 }
 
 /// Limits at which a trial is stopped: before those that must not be passed, behind those of a design.
-fn stop_limits(limits: &Limits) -> Limits {
+pub(super) fn stop_limits(limits: &Limits) -> Limits {
     let inner = limits.with_margin();
     let between = |kept: f64, limit: f64| kept + STOP_SHARE * (limit - kept);
     let pair = |kept: Option<f64>, limit: Option<f64>| kept.zip(limit).map(|(kept, limit)| between(kept, limit));

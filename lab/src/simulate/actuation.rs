@@ -30,6 +30,8 @@ pub struct DrivenTool<'a> {
     controller: Controller,
     pub state: State,
     pub effort: f64,
+    /// The effort in the place of the controller's, where somebody else controls the drive.
+    pub given_effort: Option<f64>,
     time: f64,
     updates: f64,
 }
@@ -80,7 +82,7 @@ impl DrivenTool<'_> {
             let now = self.updates / control_rate;
             self.go(now);
             let reading = read(self.state.position);
-            self.effort = self.controller.update(aim(now), reading);
+            self.effort = self.given_effort.unwrap_or_else(|| self.controller.update(aim(now), reading));
             self.updates += 1.0;
         }
         self.go(row / rate);
@@ -135,6 +137,7 @@ pub fn actuation_of<'a>(setting: &'a CompletedRig, origin: &str) -> Result<Actua
         controller: Controller::new(setting.control),
         state: State { position: start, velocity: 0.0 },
         effort: 0.0,
+        given_effort: None,
         time: 0.0,
         updates: 0.0,
     })))

@@ -37,6 +37,11 @@ pub struct Measurement {
 pub trait CommandSource {
     /// The command from this row to the next: a depth counted from the surface.
     fn command(&mut self, measurement: &Measurement) -> f64;
+
+    /// The effort from the next row on in the place of the rig's controller, where somebody else controls the drive.
+    fn effort(&mut self, _measurement: &Measurement) -> Option<f64> {
+        None
+    }
 }
 
 struct Run<'a> {
@@ -80,7 +85,7 @@ pub fn run(
         }
         run.record(&mut actuation, time);
         if let Some(source) = source.as_deref_mut() {
-            run.command(source, time, &mut rng);
+            run.command(source, time, &mut rng, &mut actuation);
         }
         if row % 4096 == 0 {
             bar.set_position(row as u64);
@@ -171,7 +176,13 @@ impl<'a> Run<'a> {
     }
 
     /// Hands the pilot what the sensors show of the row that was just recorded.
-    fn command(&mut self, source: &mut dyn CommandSource, time: f64, rng: &mut ChaCha8Rng) {
+    fn command(
+        &mut self,
+        source: &mut dyn CommandSource,
+        time: f64,
+        rng: &mut ChaCha8Rng,
+        actuation: &mut Actuation<'_>,
+    ) {
         let last = |column: &[f64]| column.last().copied().unwrap_or_default();
         let truth = self.recording.force.as_deref().map_or(0.0, last);
         let measurement = Measurement {
@@ -181,6 +192,9 @@ impl<'a> Run<'a> {
             true_force: truth,
         };
         self.command = Some(source.command(&measurement));
+        if let Actuation::Driven(driven) = actuation {
+            driven.given_effort = source.effort(&measurement);
+        }
     }
 
     /// From the true force to what the sensor shows: effects, then noise, then steps.

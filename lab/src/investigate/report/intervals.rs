@@ -42,12 +42,14 @@ fn figure(history: &[(u64, ValueState)]) -> Markup {
         figure {
             figcaption { (last.name.replace('_', " ")) " of " (last.effect.replace('_', " ")) ": " (plain(low, &last.unit)) " to " (plain(high, &last.unit)) }
             @for (number, value) in history {
-                svg role="img" aria-label={ "Round " (number) } height=(LINE) viewBox={ "0 0 " (WIDTH) " " (LINE) } preserveAspectRatio="none" {
-                    text x="2" y=(0.7 * LINE) { (number) }
-                    @if let Some([low, high]) = value.ci95 {
-                        line.interval x1=(x(low)) x2=(x(high)) y1=(0.5 * LINE) y2=(0.5 * LINE) vector-effect="non-scaling-stroke" {}
+                div.interval-row {
+                    span { "round " (number) }
+                    svg role="img" aria-label={ "Interval after round " (number) } height=(LINE) viewBox={ "0 0 " (WIDTH) " " (LINE) } preserveAspectRatio="none" {
+                        @if let Some([low, high]) = value.ci95 {
+                            line.interval x1=(x(low)) x2=(x(high)) y1=(0.5 * LINE) y2=(0.5 * LINE) vector-effect="non-scaling-stroke" {}
+                        }
+                        rect.estimate x=(x(value.value) - 1.5) y=(0.15 * LINE) width="3" height=(0.7 * LINE) {}
                     }
-                    rect.estimate x=(x(value.value) - 1.5) y=(0.15 * LINE) width="3" height=(0.7 * LINE) {}
                 }
             }
         }
