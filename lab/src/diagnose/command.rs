@@ -12,6 +12,7 @@ use crate::diagnose::experiment::Experiment;
 use crate::diagnose::report::diagnosis::Diagnosis;
 use crate::diagnose::report::html;
 use crate::error::{InputError, UsageError};
+use crate::investigate::session::separating_trial;
 use crate::outfile::OutFile;
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -67,7 +68,14 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     let (json, page, model) = (open(&args.json)?, open(&args.report)?, open(&args.model)?);
     let experiment = open(&args.experiment)?;
     let bar = progress();
-    let found = diagnose(&rig, &origin, &trials, &simulation, args.seed, &|step| bar.set_message(step.to_owned()))?;
+    let say = |step: &str| bar.set_message(step.to_owned());
+    let mut found = diagnose(&rig, &origin, &trials, &simulation, args.seed, &say)?;
+    if (page.is_some() || experiment.is_some()) && !found.answer.alternatives.is_empty() {
+        say("the trial that would decide");
+        // Without a recorded reference the loop is not known: then the motion that suits the recorded one stays.
+        let designed = separating_trial(&rig, &found, &trials);
+        found.pictures.experiment = designed.or(found.pictures.experiment);
+    }
     bar.finish_and_clear();
     print(&found.answer);
     if let Some(file) = model {
@@ -79,7 +87,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     }
     match (experiment, &found.pictures.experiment) {
         (Some(file), Some(next)) => commit(file, trajectory(next, &rig).as_bytes())?,
-        (Some(_), None) => eprintln!("note: no rival is left to be told apart: no experiment is written"),
+        (Some(_), None) => eprintln!("note: no alternative is left that a motion would tell: no experiment is written"),
         (None, _) => {}
     }
     let text = serde_json::to_string_pretty(&found.answer).context("the diagnosis cannot be written as JSON")? + "\n";

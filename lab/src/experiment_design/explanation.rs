@@ -6,7 +6,6 @@ use rayon::prelude::*;
 use super::discrimination::{LinearizedResponse, Noise, prior, range, steps, whitened};
 use super::loop_model::LoopModel;
 use super::prediction::predict;
-use crate::diagnose::Found;
 use crate::effects::{self, Effect, ExcitationStats, to_table};
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -38,24 +37,29 @@ pub struct Explanation {
     pub rig: Rig,
 }
 
-/// The answer of `found`, first, and its alternatives, each with the values at which it responds to a recorded reference as
-/// the answer does: the recordings cannot tell them from each other, so neither can what the answer makes of them. Alternatives
-/// whose values cannot be found so (those that repeat along time or way, of which the answer has no trace) are left out.
+/// `answer`, first, and for each of `alternatives`, sets of names, the rig that responds to a recorded reference as the answer does: the
+/// recordings cannot tell them from each other, so neither can what the answer makes of them. Alternatives whose values cannot be
+/// found so (those that repeat along time or way, of which the answer has no trace) are left out.
 #[must_use]
-pub fn explanations(found: &Found, trials: &[Recording], closed_loop: &LoopModel, noise: &Noise) -> Vec<Explanation> {
-    let names = found.answer.physics.iter().map(|physics| physics.name.clone()).filter(|name| name != UNKNOWN);
-    let answer = Explanation { physics: names.collect(), rig: found.improved.clone() };
+pub fn explanations(
+    answer: Explanation,
+    alternatives: &[Vec<String>],
+    trials: &[Recording],
+    closed_loop: &LoopModel,
+    noise: &Noise,
+) -> Vec<Explanation> {
     let reference = trials.iter().filter_map(|trial| trial.reference.as_ref()).max_by_key(|reference| reference.len());
-    let mut all = vec![answer.clone()];
-    let Some(reference) = reference.map(|reference| &reference[..reference.len().min(MAX_ROWS)]) else { return all };
-    let Ok(shown) = predict(&answer.rig, closed_loop, reference) else { return all };
-    let target =
-        Target { closed_loop, noise, reference, response: whitened(&shown, noise), travel: range(&shown.position) };
+    let Some(reference) = reference.map(|reference| &reference[..reference.len().min(MAX_ROWS)]) else {
+        return vec![answer];
+    };
+    let Ok(shown) = predict(&answer.rig, closed_loop, reference) else { return vec![answer] };
+    let response = whitened(&shown, noise);
+    let target = Target { closed_loop, noise, reference, response, travel: range(&shown.position) };
     let stats = excitation_stats(&answer.rig, trials);
-    let alternatives: Vec<&Vec<String>> =
-        found.answer.alternatives.iter().take(MAX_ALTERNATIVES).map(|alternative| &alternative.physics).collect();
-    all.par_extend(alternatives.into_par_iter().filter_map(|names| target.alternative(&answer, names, &stats)));
-    all
+    let alternatives: Vec<&Vec<String>> = alternatives.iter().take(MAX_ALTERNATIVES).collect();
+    let fitted = alternatives.into_par_iter().filter_map(|names| target.alternative(&answer, names, &stats));
+    let fitted: Vec<Explanation> = fitted.collect();
+    std::iter::once(answer.clone()).chain(fitted).collect()
 }
 
 /// The response that alternatives are fitted to.

@@ -1,6 +1,6 @@
 //! The free values of a rig: what a refit may move.
 
-use crate::effects::{self, Place, Resolved, key_of};
+use crate::effects::{Resolved, key_of};
 use crate::rig::Rig;
 
 /// Relative step of a finite difference.
@@ -126,10 +126,4 @@ impl Parameter {
             Self::OfEffect { name, .. } => name,
         }
     }
-}
-
-/// Whether the effect `name` acts on the drive.
-#[must_use]
-pub fn acts_on_drive(name: &str) -> bool {
-    effects::find(name).is_some_and(|effect| effect.spec().place == Place::Drive)
 }

@@ -9,6 +9,7 @@ use clap::Args;
 use sha2::{Digest as _, Sha256};
 
 use super::command_bed::CommandBed;
+use super::drive_bed::DriveBed;
 use super::emulated_drive_bed::EmulatedDriveBed;
 use super::record::{Investigation, Setup};
 use super::report;
@@ -31,9 +32,9 @@ pub struct InvestigateArgs {
     /// Recordings to begin with; without any, the first trial explores
     #[arg(value_name = "TRIAL.csv")]
     pub trials: Vec<PathBuf>,
-    /// What runs a trial: sim:HIDDEN.toml, a simulation; qemu:HIDDEN.toml, the same under the control of the drive image in QEMU;
-    /// or a command, called as COMMAND REFERENCE.csv RECORDING.csv
-    #[arg(long, value_name = "sim:FILE|qemu:FILE|COMMAND")]
+    /// What runs a trial: port:/dev/ttyUSB0, a drive on its serial line; sim:HIDDEN.toml, a simulation; qemu:HIDDEN.toml, the same
+    /// under the control of the drive image in QEMU; or a command, called as COMMAND REFERENCE.csv RECORDING.csv
+    #[arg(long, value_name = "port:PORT|sim:FILE|qemu:FILE|COMMAND")]
     pub on: String,
     /// Limits of every trial; where left out, what the recordings kept
     #[arg(long, value_name = "LIMITS.toml")]
@@ -99,6 +100,9 @@ fn test_bed(on: &str, rig: &Rig, seed: u64) -> Result<Box<dyn TestBed>> {
     if let Some(hidden) = on.strip_prefix("qemu:") {
         let image = DriveImage::prepare(Leave::Look)?;
         return Ok(Box::new(EmulatedDriveBed::new(Path::new(hidden), rig, seed, image, Vec::new())?));
+    }
+    if let Some(port) = on.strip_prefix("port:") {
+        return Ok(Box::new(DriveBed::new(Path::new(port), rig)?));
     }
     Ok(Box::new(CommandBed::new(on, rig)))
 }

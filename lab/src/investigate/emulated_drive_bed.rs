@@ -6,14 +6,11 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
-use palpate_drive::link::{Command, Message, RequestOutcome, Source, Streams};
-use palpate_drive::{
-    CALIBRATION_BYTES, Calibration, Input, POINTS, Scale, StopReason, TICK_HZ, TrajectoryConfig, TrajectoryState,
-    TrajectoryStatus,
-};
+use palpate_drive::link::{Command, Message, Source, Streams};
+use palpate_drive::{CALIBRATION_BYTES, Calibration, Input, Scale, TrajectoryConfig, TrajectoryState};
 
-use super::monitor::{Quantity, Violation};
-use super::simulated_bed::{SimulatedBed, stop_limits, truncate};
+use super::drive_trajectory::{References, TIMEOUT_TICKS, config, ending, status};
+use super::simulated_bed::{SimulatedBed, truncate};
 use super::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
 use crate::error::InputError;
 use crate::experiment_design::Limits;
@@ -25,12 +22,6 @@ use crate::simulate::{CommandSource, Measurement, simulate_commanded};
 
 /// Ticks at rest before a trial: faults from before the first word have lingered out by then.
 const WARM_UP_TICKS: usize = 64;
-
-/// Ticks of silence after which the drive ends a run by itself.
-const TIMEOUT_TICKS: u16 = 2_000;
-
-/// References that wait in the drive, at least.
-const AHEAD: u32 = 128;
 
 /// How long an effort may take; an emulator on a busy host may take seconds.
 const EFFORT_TIMEOUT: Duration = Duration::from_secs(10);
@@ -97,24 +88,6 @@ impl EmulatedDriveBed {
             ..Calibration::DEFAULT
         }
     }
-
-    /// How the drive follows `request`.
-    fn config(&self, request: &TrialRequest<'_>) -> TrajectoryConfig {
-        let surface = self.rig.surface();
-        let stop = stop_limits(request.limits);
-        let corner = self.control.derivative_filter_hz.unwrap_or(0.1 * self.control.rate_hz);
-        TrajectoryConfig {
-            depth: stop.position.map(|position| (position - surface) as f32),
-            speed: stop.speed as f32,
-            force: stop.force.unwrap_or(f64::from(f32::MAX)) as f32,
-            effort: request.limits.effort.unwrap_or(self.control.effort_saturation).min(f64::from(f32::MAX)) as f32,
-            proportional: self.control.proportional as f32,
-            derivative: self.control.derivative as f32,
-            pass: -(-std::f64::consts::TAU * corner / f64::from(TICK_HZ)).exp_m1() as f32,
-            length: u32::try_from(request.reference.len()).unwrap_or(u32::MAX),
-            timeout: TIMEOUT_TICKS,
-        }
-    }
 }
 
 impl TestBed for EmulatedDriveBed {
@@ -137,11 +110,12 @@ impl TestBed for EmulatedDriveBed {
             scale: calibration.scale(),
             calibration,
             faults: &self.faults,
+            references: References::new(request.reference.iter().copied(), self.rig.surface()),
             row: 0,
-            sent: 0,
             ended: None,
         };
-        link.prepare(&self.config(request))?;
+        let length = request.reference.len();
+        link.prepare(&config(&self.control, request.limits, self.rig.surface(), length))?;
         let seed = self.plant.seed.wrapping_add(request.round);
         let trial = match simulate_commanded(&hidden, seed, &self.plant.origin, &mut link) {
             Ok(trial) => trial,
@@ -169,9 +143,8 @@ struct DriveLink<'a> {
     calibration: Calibration,
     scale: Scale,
     faults: &'a [LinkFault],
+    references: References,
     row: usize,
-    /// References that the drive was sent.
-    sent: usize,
     /// How it ended, and after how many rows.
     ended: Option<(Ending, usize)>,
 }
@@ -186,7 +159,7 @@ impl DriveLink<'_> {
         self.client.demand(Command::Prepare(*config), "the trajectory")?;
         // It is prepared at the next tick.
         self.tick(rest)?;
-        self.top_up(0)?;
+        self.references.top_up(&mut self.client, 0, |_| ())?;
         self.client.demand(Command::Follow(true), "the start")?;
         Ok(())
     }
@@ -220,51 +193,6 @@ impl DriveLink<'_> {
         effort.context("the drive tells no effort")
     }
 
-    /// Sends references until enough wait in the drive; `played` it has followed.
-    fn top_up(&mut self, played: usize) -> Result<()> {
-        let surface = self.rig.surface();
-        while self.sent < self.request.reference.len() && self.sent < played + AHEAD as usize {
-            let end = (self.sent + POINTS).min(self.request.reference.len());
-            let points = self.request.reference[self.sent..end].iter();
-            let bytes: Vec<u8> = points.flat_map(|position| ((position - surface) as f32).to_le_bytes()).collect();
-            match self.client.ask(Command::Points(&bytes), |_| ())? {
-                RequestOutcome::Done => self.sent = end,
-                // It has ended by itself: its status says why.
-                _ => break,
-            }
-        }
-        Ok(())
-    }
-
-    fn status(&mut self) -> Result<TrajectoryStatus> {
-        let mut status = None;
-        self.client.ask(Command::Trajectory, |message| {
-            if let Message::Trajectory(found) = message {
-                status = Some(found);
-            }
-        })?;
-        status.context("the drive does not tell where its trajectory stands")
-    }
-
-    /// What `reason` is to an investigation; `measurement` was the last.
-    fn ending(&self, reason: StopReason, measurement: &Measurement) -> Ending {
-        let stop = stop_limits(self.request.limits);
-        let [low, high] = stop.position;
-        let passed = |quantity, value: f64, limit: f64| {
-            Ending::Stopped(Violation { quantity, time_s: measurement.time, value, limit })
-        };
-        match reason {
-            StopReason::Depth => {
-                let limit = if measurement.position < 0.5 * (low + high) { low } else { high };
-                passed(Quantity::Position, measurement.position, limit)
-            }
-            // The drive tells that it was passed, not by how much.
-            StopReason::Speed => passed(Quantity::Speed, stop.speed, stop.speed),
-            StopReason::Force => passed(Quantity::Force, measurement.force, stop.force.unwrap_or(f64::INFINITY)),
-            other => Ending::Failed(format!("the drive ended it by itself: {other:?}").to_lowercase()),
-        }
-    }
-
     fn disturb(&mut self) -> Result<()> {
         for fault in self.faults {
             match fault {
@@ -288,12 +216,14 @@ impl DriveLink<'_> {
             self.ended = Some((Ending::Interrupted, self.row));
             return Ok(0.0);
         }
-        self.top_up(self.row)?;
+        // Estimates of the tick before are of no use any more.
+        self.references.top_up(&mut self.client, self.row, |_| ())?;
         let effort = self.tick(self.word(measurement.position, measurement.force))?;
         // The drive says zero where it has ended; it is asked only then.
         if effort == 0.0 {
-            if let TrajectoryState::Stopped(reason) = self.status()?.state {
-                self.ended = Some((self.ending(reason, measurement), self.row));
+            if let TrajectoryState::Stopped(reason) = status(&mut self.client, |_| ())?.state {
+                let Measurement { time, position, force, .. } = *measurement;
+                self.ended = Some((ending(reason, self.request.limits, time, position, force), self.row));
             }
         }
         Ok(effort)

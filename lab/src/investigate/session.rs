@@ -9,11 +9,12 @@ use super::monitor::hold_against;
 use super::questions::{has_unknown, questions, words};
 use super::record::{Investigation, Outcome, Round, State, TrialRecord, round_folder, write};
 use super::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
+use crate::diagnose::report::diagnosis::Experiment;
 use crate::diagnose::{Found, diagnose};
 use crate::experiment_design::discrimination::Noise;
-use crate::experiment_design::explanation::explanations;
+use crate::experiment_design::explanation::{UNKNOWN, explanations};
 use crate::experiment_design::loop_model::LoopModel;
-use crate::experiment_design::planner::{LEAST_NEW_STATES, Situation};
+use crate::experiment_design::planner::{DECISIVE_ENERGY, LEAST_NEW_STATES, Situation};
 use crate::experiment_design::{Explanation, Limits, Plan, Question, plan};
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
@@ -139,13 +140,9 @@ impl Session<'_> {
             }
             Err(error) => return Err(error),
         };
-        let residual = |channel: &str| {
-            let of = found.answer.channels.iter().find(|fit| fit.channel == channel);
-            of.map_or(0.0, |fit| if fit.improved.is_finite() { fit.improved } else { 0.0 })
-        };
-        let noise = Noise::of(self.rig, &trials, [residual("force"), residual("effort")]);
+        let noise = noise(self.rig, &trials, &found);
         (self.say)("fitting the alternatives");
-        let explanations = explanations(&found, &trials, &closed_loop, &noise);
+        let explanations = explanations_of(&found, &trials, &closed_loop, &noise);
         let questions = questions(&found, &explanations);
         Ok(Standing { found: Some(found), explanations, questions, noise, closed_loop, trials })
     }
@@ -284,6 +281,55 @@ fn is_confirmed(investigation: &Investigation, standing: &Standing) -> bool {
     let open = has_unknown(&found.answer) || !found.answer.alternatives.is_empty() || !standing.questions.is_empty();
     let states: Vec<&State> = investigation.rounds.iter().filter_map(|round| round.state.as_ref()).collect();
     !open && matches!(states.as_slice(), [.., before, now] if before.physics == now.physics)
+}
+
+/// The answer of `found` and its alternatives as rigs.
+fn explanations_of(found: &Found, trials: &[Recording], closed_loop: &LoopModel, noise: &Noise) -> Vec<Explanation> {
+    let names = found.answer.physics.iter().map(|physics| physics.name.clone()).filter(|name| name != UNKNOWN);
+    let answer = Explanation { physics: names.collect(), rig: found.improved.clone() };
+    let alternatives: Vec<Vec<String>> =
+        found.answer.alternatives.iter().map(|alternative| alternative.physics.clone()).collect();
+    explanations(answer, &alternatives, trials, closed_loop, noise)
+}
+
+/// Expected noise of each channel, no less than what `found` leaves in it.
+fn noise(rig: &Rig, trials: &[Recording], found: &Found) -> Noise {
+    let residual = |channel: &str| {
+        let of = found.answer.channels.iter().find(|fit| fit.channel == channel);
+        of.map_or(0.0, |fit| if fit.improved.is_finite() { fit.improved } else { 0.0 })
+    };
+    Noise::of(rig, trials, [residual("force"), residual("effort")])
+}
+
+/// The trial that best tells the answer of `found` from its alternatives, within what `trials` did; `None` where there is no alternative,
+/// or no motion tells anything.
+#[must_use]
+pub fn separating_trial(rig: &Rig, found: &Found, trials: &[Recording]) -> Option<Experiment> {
+    let limits = Limits::of_recordings(trials)?;
+    let closed_loop = LoopModel::new(rig, trials);
+    let noise = noise(rig, trials, found);
+    let explanations = explanations_of(found, trials, &closed_loop, &noise);
+    let open = questions(found, &explanations)
+        .into_iter()
+        .filter(|(question, _)| matches!(question, Question::Alternative(_)));
+    let (questions, words): (Vec<Question>, Vec<String>) = open.unzip();
+    if questions.is_empty() {
+        return None;
+    }
+    let (explanations, questions) = (&explanations, &questions);
+    let situation = Situation { explanations, questions, trials, limits: &limits, noise, closed_loop, ease: 1.0 };
+    let plan = plan(&situation)?;
+    let told = words.iter().zip(&plan.expected).map(|(words, energy)| {
+        let enough = if *energy >= DECISIVE_ENERGY { "it decides" } else { "too little to decide for certain" };
+        format!("{words}: {enough} ({:.1} of {DECISIVE_ENERGY:.0})", energy.min(999.0))
+    });
+    let text = format!(
+        "{}. It goes no farther, quicker or harder than the recordings did. What it is expected to tell: {}.",
+        capitalized(&plan.motions.join("; then ")),
+        told.collect::<Vec<_>>().join("; "),
+    );
+    let time = (0..plan.reference.len()).map(|row| row as f64 / closed_loop.rate_hz).collect();
+    Some(Experiment { text, time, reference: plan.reference })
 }
 
 /// Where the recording of round `number` is.

@@ -326,3 +326,62 @@ pub fn table(rows: &[Row]) -> String {
         most(|row| row.used_by_fixed),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(names: &[&str]) -> Vec<String> {
+        names.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    fn answer(named: &[&str], alternatives: &[&str]) -> Answer {
+        Answer { named: names(named), alternatives: alternatives.iter().map(|name| names(&[name])).collect() }
+    }
+
+    fn row(truth: &[&str], first: Answer, rounds: Vec<Answer>, fixed: Answer) -> Row {
+        Row {
+            index: 0,
+            truth: names(truth),
+            strength: 2.0,
+            first,
+            rounds,
+            fixed,
+            used: [0.5, 0.8, 0.1, 0.2],
+            used_by_fixed: [0.9, 0.1, 0.1, 0.1],
+            stopped: 1,
+            recorded_s: [25.0, 25.0],
+            outcome: String::new(),
+            seconds: 1.0,
+        }
+    }
+
+    #[test]
+    fn an_answer_with_an_alternative_is_right_but_not_alone() {
+        let truth = names(&["adhesion"]);
+        let judged = |answer: Answer| (answer.is_right(&truth), answer.is_right_and_alone(&truth));
+        assert_eq!(judged(answer(&["adhesion"], &[])), (true, true));
+        assert_eq!(judged(answer(&["adhesion"], &["hysteresis"])), (true, false));
+        assert_eq!(judged(answer(&["adhesion", "hysteresis"], &[])), (false, false));
+        assert_eq!(judged(answer(&[], &["adhesion"])), (false, false));
+    }
+
+    #[test]
+    fn the_table_counts_the_last_round_against_the_first_and_the_fixed() {
+        let rows = [
+            row(
+                &["adhesion"],
+                answer(&["adhesion"], &["hysteresis"]),
+                vec![answer(&["hysteresis"], &[]), answer(&["adhesion"], &[])],
+                answer(&["hysteresis"], &[]),
+            ),
+            row(&[], answer(&[], &[]), Vec::new(), answer(&["adhesion"], &[])),
+        ];
+        let table = table(&rows);
+        let line = |of: &str| table.lines().find(|line| line.contains(of)).unwrap_or_default().to_owned();
+        assert!(line("| all | first recording alone |").contains("| 1 of 2 (1 to 99 %) | 2 of 2"), "{table}");
+        assert!(line("| all | designed trials |").contains("| 2 of 2"), "{table}");
+        assert!(line("| all | fixed rich trials |").contains("| 0 of 2"), "{table}");
+        assert!(table.contains("0.80 in designed trials, 0.90 in fixed ones; 2 designed trials"), "{table}");
+    }
+}

@@ -5,12 +5,13 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use palpate_lab::experiment_design::Limits;
+use palpate_lab::investigate::drive_bed::DriveBed;
 use palpate_lab::investigate::emulated_drive_bed::{EmulatedDriveBed, LinkFault};
 use palpate_lab::investigate::monitor::{Quantity, hold_against};
 use palpate_lab::investigate::record::{Investigation, Setup};
 use palpate_lab::investigate::session::Session;
 use palpate_lab::investigate::test_bed::{Ending, TestBed as _, TrialOutcome, TrialRequest};
-use palpate_lab::qemu_drive::DriveImage;
+use palpate_lab::qemu_drive::{ClockMode, DriveImage};
 use palpate_lab::simulate::simulate;
 use palpate_lab::tools::{Leave, MissingTools};
 
@@ -88,6 +89,27 @@ fn the_drive_ends_a_trial_before_the_force_passes_its_limit() {
     let outcome = run(&mut bed, &press(0.015), &limits);
     let Ending::Stopped(violation) = outcome.ending else { panic!("{:?}", outcome.ending) };
     assert_eq!(violation.quantity, Quantity::Force);
+}
+
+#[test]
+fn a_drive_without_sensors_is_told_as_what_it_is_and_gives_no_recording() {
+    let _one = ONE.lock();
+    let Some(image) = image() else { return };
+    let drive = image.start(ClockMode::Wall, None, &[]).unwrap();
+    drive.client().unwrap();
+    let mut bed = DriveBed::new(&drive.socket(), &bench("")).unwrap();
+    let request = TrialRequest {
+        reference: &press(0.008),
+        rate_hz: 1000.0,
+        limits: &LIMITS,
+        reference_file: Path::new("reference.csv"),
+        recording_file: Path::new("recording.csv"),
+        interrupted: &AtomicBool::new(false),
+        round: 1,
+    };
+    let outcome = bed.run(&request).unwrap();
+    let Ending::Failed(why) = outcome.ending else { panic!("{:?}", outcome.ending) };
+    assert!(why.contains("no good sample") && outcome.recording.is_none(), "{why}");
 }
 
 /// Ten rigs, one designed trial each, with noise on the line of every third and a silent host in the fourth and eighth.
