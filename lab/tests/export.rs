@@ -112,7 +112,7 @@ fn lag_and_limit_are_the_actuators_and_a_play_is_a_second_joint() {
     let actuator = "<general name=\"drive\" joint=\"axis\" gear=\"2\" dyntype=\"filterexact\" dynprm=\"0.004\" forcerange=\"-3 3\"";
     assert!(text.contains(actuator), "{text}");
     assert!(text.contains("armature=\"0.2\"") && text.contains("range=\"-0.0002 0.0002\""), "{text}");
-    assert!(text.contains("<joint name=\"axis_play\" type=\"slide\" axis=\"1 0 0\""), "{text}");
+    assert!(text.contains("<joint name=\"axis_play\" type=\"slide\" axis=\"1 0 0\" pos=\"0.001 0 0\""), "{text}");
 }
 
 #[test]

@@ -220,10 +220,11 @@ impl Writer<'_> {
                 "a model without it",
             ));
         }
-        let copied: String = ["type", "axis", "pos"]
+        let copied: String = ["type", "axis"]
             .into_iter()
             .filter_map(|key| Some(format!(" {key}=\"{}\"", self.model.resolved(joint, key)?)))
             .collect();
+        let copied = copied + &self.series_position();
         // Nothing of the user's defaults may reach the new joint.
         let plain = "armature=\"0\" frictionloss=\"0\" ref=\"0\"";
         let damping = if attributes.contains("damping") { "" } else { " damping=\"0\"" };
@@ -244,6 +245,28 @@ impl Writer<'_> {
             self.model.name
         ));
         Ok(())
+    }
+
+    /// `pos` of a joint in series with the user's.
+    ///
+    /// MuJoCo 4.0 takes the inertia of a body with two slide joints along one axis of its frame for diagonal where their `pos` is zero,
+    /// and the second never moves. The `pos` of a slide joint has no other meaning than where it is drawn.
+    fn series_position(&self) -> String {
+        let position = self.model.resolved(self.model.joint, "pos");
+        let numbers = || {
+            position
+                .into_iter()
+                .flat_map(|text| text.split_whitespace())
+                .filter_map(|number| number.parse::<f64>().ok())
+        };
+        let is_zero = numbers().all(|number| number == 0.0);
+        match position {
+            _ if is_zero && self.export.rig.coordinate == crate::rig::Coordinate::Linear => {
+                " pos=\"0.001 0 0\"".to_owned()
+            }
+            Some(position) => format!(" pos=\"{position}\""),
+            None => String::new(),
+        }
     }
 
     fn saturation(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
