@@ -128,6 +128,8 @@ impl<const N: usize> Stream<N> {
     ///
     /// # Errors
     /// Why it was rejected; then nothing but the clock has moved.
+    // Inlined: as a call it hands its result over in memory, byte by byte where rejection and reading share a place.
+    #[inline(always)]
     pub fn update(&mut self, sample: Sample) -> Result<Event, Rejection> {
         let reading = self.front_end.update(&mut self.state, sample)?;
         let mut flags = Flags::empty();

@@ -46,6 +46,7 @@ impl UncertaintyPropagation {
 
     /// Takes the gain and innovation of one update. `forgetting`, below 1, sets over how many samples the excitation is
     /// measured and the samples are counted.
+    #[inline(always)]
     pub fn advance(&mut self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) {
         let (x, v) = (o.penetration, o.rate);
         let map = [

@@ -89,6 +89,7 @@ impl CusumRls {
     }
 
     /// Resets the covariance where a change is detected, then updates with `o`.
+    #[inline(always)]
     fn advance(&self, state: &mut CusumRlsState, o: &Observation) -> (f32, Impedance, Flags) {
         let innovation = o.residual(state.recursion.estimate);
         let changed = self.config.change.update(&mut state.change, innovation);
@@ -125,6 +126,7 @@ impl UpdateLaw for CusumRls {
         1
     }
 
+    #[inline(always)]
     fn update(&self, state: &mut CusumRlsState, recent: Recent<'_>) -> Step {
         let o = recent.newest().unwrap_or_default();
         let (innovation, gain, flags) = self.advance(state, &o);

@@ -111,26 +111,21 @@ impl Sprls {
         let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe_with(o, 1.0, 1.0);
-        let quiet = !self.perturbs(state.innovation_before);
-        if quiet && state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
-            state.innovation_before = innovation;
-            innovation
-        } else {
-            self.update_estimate_perturbed(state, o)
+        if self.perturbs(state.innovation_before) {
+            self.perturb(&mut covariance, state.innovation_before);
         }
+        state.innovation_before = innovation;
+        if !state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
+            self.commit_limited(state, gain, covariance);
+        }
+        innovation
     }
 
-    /// The same where the covariance is perturbed, has to be limited, or is reset.
+    /// The end of an update whose covariance has to be limited, or is reset.
     #[cold]
-    fn update_estimate_perturbed(&self, state: &mut SprlsState, o: &Observation) -> f32 {
-        let innovation = o.residual(state.recursion.estimate);
-        let mut covariance = state.recursion.covariance;
-        let gain = covariance.observe_with(o, 1.0, 1.0);
-        self.perturb(&mut covariance, state.innovation_before);
+    fn commit_limited(&self, state: &mut SprlsState, gain: Impedance, mut covariance: Covariance) {
         covariance.limit(self.config.covariance_limit);
-        state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
-        state.innovation_before = innovation;
-        innovation
+        state.recursion.commit(gain, state.innovation_before, covariance, self.config.initial_covariance);
     }
 }
 
