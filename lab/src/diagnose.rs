@@ -11,6 +11,7 @@
 pub mod bootstrap;
 pub mod check;
 pub mod command;
+pub mod contact;
 pub mod drive;
 pub mod estimation;
 pub mod experiment;

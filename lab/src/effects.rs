@@ -35,7 +35,7 @@ pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 pub struct EffectState([f64; STATE_SIZE]);
 
 /// Entries of an effect's state: as many as the effect with the most of them needs.
-const STATE_SIZE: usize = 7;
+const STATE_SIZE: usize = 12;
 
 impl std::ops::Deref for EffectState {
     type Target = [f64; STATE_SIZE];
@@ -63,6 +63,11 @@ pub trait Effect: Sync {
     /// that may be as round as it likes bends like any other law.
     fn refines(&self, _form: usize) -> bool {
         false
+    }
+
+    /// Names of effects of which one has to be there for form `form` to differ from a simpler one; none where it always does.
+    fn builds_on(&self, _form: usize) -> &'static [&'static str] {
+        &[]
     }
 
     /// For a form that repeats along time or way: where to look for its frequency. Its `starts` are then empty.

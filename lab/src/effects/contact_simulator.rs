@@ -124,7 +124,7 @@ impl<'a> ContactSimulator<'a> {
         touch.enter();
         act(Stage::Depth, &mut touch);
         touch.spring = touch.stiffness * touch.depth;
-        act(Stage::Law, &mut touch);
+        act(Stage::Memory, &mut touch);
         touch.cut(self.borne);
         self.borne = touch.borne();
         act(Stage::Limit, &mut touch);

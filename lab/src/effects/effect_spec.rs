@@ -34,6 +34,8 @@ pub enum Stage {
     Depth,
     /// Adds to the force of spring and damper.
     Law,
+    /// Remembers what the spring bore, whatever its law.
+    Memory,
     /// Changes where the force ends.
     Limit,
     /// Between command and the force on the tool.

@@ -75,6 +75,12 @@ impl Term {
     }
 }
 
+impl PartialEq for Term {
+    fn eq(&self, other: &Self) -> bool {
+        self.is(other)
+    }
+}
+
 impl std::fmt::Debug for Term {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}/{}", self.name(), self.effect.spec().forms[self.form].name)

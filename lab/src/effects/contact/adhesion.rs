@@ -52,10 +52,18 @@ static SPEC: EffectSpec = EffectSpec {
                 ),
             ],
         },
+        Form {
+            name: "bridge",
+            equation: "leaving, F falls no lower than -pull_off_force, and is -pull_off_force (1 - height / release_height) above the surface",
+            parameters: &[
+                Parameter::new("pull_off_force", Word::new("N", "N m"), "greatest pull", 0.0, f64::INFINITY),
+                Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
+            ],
+        },
     ],
     excited_by: "leaving the surface, slowly and often",
     resembles: &["force_bias", "lost_motion"],
-    source: "D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
+    source: "a liquid bridge; D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
 };
 
 impl Effect for Adhesion {
@@ -95,12 +103,20 @@ impl Effect for Adhesion {
             touch.force -= values[0];
             return;
         }
+        let stretched = touch.stiffness * touch.position + touch.damping * touch.velocity + touch.extra;
+        if form == 3 {
+            touch.force = if touch.position > 0.0 {
+                touch.force.max(0.0) + stretched.min(0.0).max(-values[0])
+            } else {
+                -values[0] * (1.0 + touch.position / values[1].max(f64::MIN_POSITIVE)).max(0.0)
+            };
+            return;
+        }
         let mut pull = values[0];
         if form == 2 {
             let beyond = (-touch.position - pull / touch.stiffness.max(f64::MIN_POSITIVE)).max(0.0);
             pull *= (1.0 - beyond / values[2].max(f64::MIN_POSITIVE)).max(0.0);
         }
-        let stretched = touch.stiffness * touch.position + touch.damping * touch.velocity + touch.extra;
         if touch.velocity < 0.0 || touch.position < 0.0 {
             touch.force = touch.force.max(0.0) + stretched.min(0.0).max(-pull);
         }

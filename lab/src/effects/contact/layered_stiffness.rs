@@ -47,6 +47,22 @@ static SPEC: EffectSpec = EffectSpec {
                 ),
             ],
         },
+        Form {
+            name: "three_layers",
+            equation: "spring = K x + added_stiffness max(0, x - layer_depth) + second_added max(0, x - second_depth)",
+            parameters: &[
+                ADDED_STIFFNESS,
+                LAYER_DEPTH,
+                Parameter::new(
+                    "second_added",
+                    Word::new("N/m", "N m/rad"),
+                    "what the third layer adds to the second, a stop say",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                ),
+                Parameter::new("second_depth", Word::new("m", "rad"), "depth of the second boundary", 0.0, f64::INFINITY),
+            ],
+        },
     ],
     excited_by: "contacts that go through the boundary and others that stop before it",
     resembles: &["nonlinear_stiffness", "force_saturation"],
@@ -65,6 +81,13 @@ impl Effect for LayeredStiffness {
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let depths = linear(0.15, 0.9, 8).into_iter().map(|part| part * scene.depth);
         let added = 0.1 * scene.stiffness;
+        if form == 2 {
+            // A preload that is overcome at once, a soft way, a stop near its end; and layers of like thickness.
+            let shallow = [0.01, 0.03, 0.08, 0.25, 0.45];
+            let deep = [0.55, 0.7, 0.8, 0.88, 0.95];
+            let pairs = shallow.iter().flat_map(|first| deep.iter().map(move |second| (first * scene.depth, second * scene.depth)));
+            return pairs.map(|(first, second)| Start::sized(&[added, first, added, second], &[0, 2])).collect();
+        }
         if form == 0 {
             return depths.map(|depth| Start::sized(&[added, depth], &[0])).collect();
         }
@@ -86,5 +109,10 @@ impl Effect for LayeredStiffness {
             ramp(touch.position - values[1], width)
         };
         touch.spring += values[0] * beyond;
+        if form == 2 {
+            let depth = if touch.bilateral { touch.position.abs() } else { touch.position };
+            let further = ramp(depth - values[3], width);
+            touch.spring += values[2] * if touch.bilateral { further.copysign(touch.position) } else { further };
+        }
     }
 }

@@ -62,8 +62,8 @@ impl Effect for SurfaceMotion {
     }
 
     fn frequency_search(&self, form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
-        // Half a turn a trial apart, up to a few Hz or what the analysis resolves: nothing falls between two of them.
-        let most = (8.0 * scene.duration).min(0.1 * scene.duration / scene.step).clamp(2.0, 400.0);
+        // Half a turn a trial apart, up to the shaking of a table or what the rows resolve: nothing falls between two of them.
+        let most = (30.0 * scene.duration).min(0.1 * scene.duration / scene.step).clamp(2.0, 1000.0);
         (form == 0 && scene.separates_time_from_depth()).then(|| FrequencySearch {
             abscissa: Abscissa::Time,
             weight: ToneWeight::Inside,

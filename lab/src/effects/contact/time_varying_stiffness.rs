@@ -52,6 +52,11 @@ static SPEC: EffectSpec = EffectSpec {
                     .within(Limit::RepeatedCycles),
             ],
         },
+        Form {
+            name: "settling_in_contact",
+            equation: "K(t) = K (1 + change exp(-s / time_constant)), s since the tool touched",
+            parameters: &[CHANGE, Parameter::new("time_constant", SECOND, "of the change", 0.0, f64::INFINITY)],
+        },
     ],
     excited_by: "the same contact repeated, early and late",
     resembles: &["force_drift", "stress_relaxation", "plastic_set", "surface_motion"],
@@ -76,6 +81,7 @@ impl Effect for TimeVaryingStiffness {
             0 => vec![Start::sized(&[0.1 / end], &[0])],
             1 => linear(0.04, 0.96, 24).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
             2 => geometric(0.03, 1.0, 5).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
+            4 => geometric(0.003, 0.3, 6).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
             _ => Vec::new(),
         }
     }
@@ -92,13 +98,16 @@ impl Effect for TimeVaryingStiffness {
         })
     }
 
-    fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
+    fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
+        // state: seconds since the tool touched.
+        state[0] = if touch.position > 0.0 { state[0] + touch.step } else { 0.0 };
         let time = touch.time;
         touch.stiffness *= 1.0
             + match form {
                 0 => values[0] * time,
                 1 => values[0] * gate(time - values[1], touch.filter_width),
                 2 => -values[0] * (-time / values[1].max(f64::MIN_POSITIVE)).exp_m1(),
+                4 => values[0] * (-state[0] / values[1].max(f64::MIN_POSITIVE)).exp(),
                 _ => {
                     let (sine, cosine) = (TAU * values[2] * time).sin_cos();
                     values[0] * sine + values[1] * cosine

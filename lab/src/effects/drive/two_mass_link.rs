@@ -36,9 +36,9 @@ impl TwoMassLink {
             let stretch = push.effort / self.stiffness;
             let lead = stretch + 0.5 * self.gap * stretch.signum();
             let (position, velocity) = (push.position, push.velocity);
-            **state = [position + lead, velocity, position, velocity, push.effort, push.effort_rate, 1.0];
+            state[..7].copy_from_slice(&[position + lead, velocity, position, velocity, push.effort, push.effort_rate, 1.0]);
         }
-        let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, _] = **state;
+        let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, ..] = **state;
         let part = steps.max(1.0).recip();
         let span = push.step * part;
         let lightness = span / self.inertia;
@@ -56,7 +56,7 @@ impl TwoMassLink {
             speed += lightness * (effort.at(middle) - pull - self.viscous * speed);
             motor += 0.5 * span * speed;
         }
-        **state = [motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0];
+        state[..7].copy_from_slice(&[motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0]);
         push.effort = self.pull(motor - push.position, speed - push.velocity);
         push.effort_rate = self.stiffness * (speed - push.velocity);
     }

@@ -8,6 +8,13 @@ use crate::rig::Word;
 /// See [`SPEC`].
 pub struct ForceDrift;
 
+/// Instants at which a wandering zero has a value.
+const KNOTS: usize = 8;
+
+const fn knot(name: &'static str) -> Parameter {
+    Parameter::new(name, Word::new("N", "N m"), "zero at this eighth of the span", f64::NEG_INFINITY, f64::INFINITY).each_trial()
+}
+
 static SPEC: EffectSpec = EffectSpec {
     name: "force_drift",
     place: Place::Sensor,
@@ -61,6 +68,21 @@ static SPEC: EffectSpec = EffectSpec {
                     .within(Limit::ResolvableTime),
             ],
         },
+        Form {
+            name: "wandering",
+            equation: "reading = F + straight lines between zero_1 ... zero_8, equally apart over span",
+            parameters: &[
+                knot("zero_1"),
+                knot("zero_2"),
+                knot("zero_3"),
+                knot("zero_4"),
+                knot("zero_5"),
+                knot("zero_6"),
+                knot("zero_7"),
+                knot("zero_8"),
+                Parameter::fixed("span", Word::same("s"), "from the first of them to the last"),
+            ],
+        },
     ],
     excited_by: "free motion early and late",
     resembles: &["force_bias", "time_varying_stiffness", "surface_motion"],
@@ -86,6 +108,12 @@ impl Effect for ForceDrift {
         match form {
             0 => vec![Start::sized(&[rate], &[0])],
             1 => vec![Start::sized(&[rate, size], &[0, 1])],
+            3 if scene.shows_sensor_zero() => {
+                let mut values = vec![size; KNOTS];
+                values.push(scene.duration);
+                vec![Start::sized(&values, &[0, 1, 2, 3, 4, 5, 6, 7])]
+            }
+            3 => Vec::new(),
             // Much slower is a ramp, much quicker an offset.
             _ => geometric(0.1, 1.0, 4).iter().map(|part| Start::sized(&[size, part * scene.duration], &[0])).collect(),
         }
@@ -95,6 +123,12 @@ impl Effect for ForceDrift {
         let zero = |time: f64| match form {
             0 => values[0] * time,
             1 => values[0] * time + values[1],
+            3 => {
+                let place = (time / values[KNOTS].max(f64::MIN_POSITIVE) * (KNOTS - 1) as f64).clamp(0.0, (KNOTS - 1) as f64);
+                let before = (place as usize).min(KNOTS - 2);
+                let part = place - before as f64;
+                values[before] * (1.0 - part) + values[before + 1] * part
+            }
             _ => -values[0] * (-time / values[1].max(f64::MIN_POSITIVE)).exp_m1(),
         };
         for (at, force) in reading.force.iter_mut().enumerate() {

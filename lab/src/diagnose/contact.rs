@@ -1,0 +1,14 @@
+//! The contact by a model of its force: position in, force out.
+
+pub mod criteria;
+pub mod fit;
+pub mod held_out;
+pub mod interval;
+pub mod model;
+pub mod motion;
+pub mod outcome;
+pub mod projection;
+pub mod scales;
+pub mod selection;
+pub mod tones;
+pub mod trial;

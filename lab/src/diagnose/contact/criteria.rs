@@ -1,0 +1,39 @@
+//! When a law counts as told by the recordings. Each number with its meaning and origin.
+
+/// Log likelihood that a larger model has to gain, nats: one in e^10 by chance for one comparison, e^5 for the hundred and fifty that
+/// a search makes.
+pub const LEAST_GAIN: f64 = 10.0;
+
+/// And for each value that it has more, nats: as the Bayesian criterion asks with e^10 rows, ln(n) / 2 a value.
+pub const LEAST_GAIN_PER_VALUE: f64 = 5.0;
+
+/// Share of what the smaller model leaves above the sensors' noise.
+pub const LEAST_SHARE: f64 = 0.2;
+
+/// Part, in root mean square, of all that the nominal law leaves above the noise.
+pub const LEAST_PART_OF_ALL: f64 = 0.1;
+
+/// Part of the force's deviation below which nothing is told as missing, whatever its significance: no contact is known that well.
+pub const LEAST_PART_OF_FORCE: f64 = 0.002;
+
+/// Vuong's statistic: 95 % of one side. What shows on a few occasions alone, such as a release, cannot reach more than their root.
+pub const LEAST_VUONG: f64 = 1.6;
+
+/// Share of the held-out power above the noise that a named effect has to take beside the others: half of what the search asks on its
+/// own rows.
+pub const LEAST_HELD_OUT_SHARE: f64 = 0.1;
+
+/// Power of what is left over the sensors' from which something is: the sensors' own noise is known to some 15 %.
+pub const NOTABLE_POWER: f64 = 1.32;
+
+/// And part of the force's deviation from which it is called unknown.
+pub const UNKNOWN_PART_OF_FORCE: f64 = 0.005;
+
+/// Share of the mismatch that named effects have to take to stand for it: they halve what is left, in root mean square.
+pub const TOLD_SHARE: f64 = 0.75;
+
+/// Part of the mismatch's power that may be left beside named effects.
+pub const MOST_LEFT: f64 = 0.25;
+
+/// Factor by which refitted values have to lessen the residual before they are told as wrong.
+pub const VALUES_MATTER: f64 = 1.05;

@@ -1,0 +1,313 @@
+//! Weighted least squares of a contact's law: Levenberg's and Marquardt's method with bounds and priors.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::model::{ContactModel, Range, index};
+use super::trial::ContactTrial;
+use crate::diagnose::linalg::{dot, energy};
+
+/// The trials that a model is fitted to, and what each row is worth.
+#[derive(Debug, Clone)]
+pub struct Data<'a> {
+    /// Every trial.
+    pub trials: &'a [ContactTrial],
+    /// One over the deviation that the sensors give each row of each trial, N or N m; zero where a row does not count.
+    pub weights: Vec<Vec<f64>>,
+}
+
+/// A fitted model.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// What was fitted.
+    pub model: ContactModel,
+    /// Its values.
+    pub values: Vec<f64>,
+    /// Squares of the weighted residual, and of the values' distance from their priors.
+    pub energy: f64,
+}
+
+/// How long a search may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effort(pub usize);
+
+impl Effort {
+    /// Enough to compare one start with another.
+    pub const QUICK: Self = Self(4);
+    /// To the end.
+    pub const FULL: Self = Self(30);
+}
+
+/// Part of the residual's energy below which a step no longer counts.
+const NEGLIGIBLE_PART: f64 = 1e-4;
+
+/// Step of a finite difference, in sizes of the value.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Tries of a damping before the search ends, and the factors between them.
+const DAMPING_TRIES: usize = 6;
+const DAMPING_RAISED: f64 = 6.0;
+const DAMPING_LOWERED: f64 = 0.25;
+
+/// Longest step of a value that moves by factors, and of another, in sizes.
+const LONGEST_FACTOR: f64 = 1.0;
+const LONGEST_STEP: f64 = 30.0;
+
+impl<'a> Data<'a> {
+    /// Rows that count.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.weights.iter().flatten().filter(|weight| **weight > 0.0).count()
+    }
+
+    /// Measured less predicted force of trial `trial`, N or N m.
+    #[must_use]
+    pub fn residual(&self, model: &ContactModel, values: &[f64], trial: usize) -> Vec<f64> {
+        let predicted = model.predicted(values, &self.trials[trial], trial);
+        self.trials[trial].force.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect()
+    }
+
+    fn weighted(&self, model: &ContactModel, values: &[f64], trial: usize) -> Vec<f64> {
+        let mut residual = self.residual(model, values, trial);
+        residual.iter_mut().zip(&self.weights[trial]).for_each(|(residual, weight)| {
+            *residual = if *weight > 0.0 { *residual * weight } else { 0.0 };
+        });
+        residual
+    }
+
+    /// Weighted residuals of all trials, one after another.
+    #[must_use]
+    pub fn weighted_residual(&self, model: &ContactModel, values: &[f64]) -> Vec<f64> {
+        let each: Vec<Vec<f64>> =
+            (0..self.trials.len()).into_par_iter().map(|trial| self.weighted(model, values, trial)).collect();
+        each.concat()
+    }
+
+    /// Columns of derivatives of the weighted residual by one step of each value in `free`.
+    #[must_use]
+    pub fn columns(
+        &self,
+        model: &ContactModel,
+        values: &[f64],
+        ranges: &[Range],
+        free: &[usize],
+        base: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let starts = self.starts();
+        let column = |&at: &usize| {
+            let range = &ranges[at];
+            let (mut moved, mut difference) = (values.to_vec(), DIFFERENCE);
+            moved[at] = range.moved(values[at], difference);
+            if moved[at] > range.high {
+                difference = -difference;
+                moved[at] = range.moved(values[at], difference);
+            }
+            let mut column = vec![0.0; base.len()];
+            let trials = model.owner(at).map_or(0..self.trials.len(), |trial| trial..trial + 1);
+            for trial in trials {
+                let after = self.weighted(model, &moved, trial);
+                for (row, after) in after.iter().enumerate() {
+                    let row = starts[trial] + row;
+                    column[row] = (after - base[row]) / difference;
+                }
+            }
+            column
+        };
+        free.par_iter().map(column).collect()
+    }
+
+    /// Where each trial begins among all rows.
+    #[must_use]
+    pub fn starts(&self) -> Vec<usize> {
+        let mut next = 0;
+        let starts = self.trials.iter().map(|trial| {
+            next += trial.len();
+            next - trial.len()
+        });
+        starts.collect()
+    }
+
+    /// `start` fitted; values that `held` names stay.
+    #[must_use]
+    pub fn fit_holding(
+        &self,
+        model: &ContactModel,
+        start: &[f64],
+        effort: Effort,
+        held: &dyn Fn(usize) -> bool,
+    ) -> Fit {
+        let mut values = start.to_vec();
+        for (value, range) in values.iter_mut().zip(model.ranges(start)) {
+            *value = value.max(range.low).min(range.high);
+        }
+        let mut base = self.weighted_residual(model, &values);
+        let mut cost = energy(&base) + prior_energy(&model.ranges(&values), &values);
+        let mut damping = 1e-3;
+        for _ in 0..effort.0 {
+            let ranges = model.ranges(&values);
+            let free: Vec<usize> = (0..values.len()).filter(|at| ranges[*at].free && !held(*at)).collect();
+            let normal = Normal::of(self.columns(model, &values, &ranges, &free, &base), &base, &ranges, &free, &values);
+            let mut gained = 0.0;
+            for _ in 0..DAMPING_TRIES {
+                let moved = normal.step(&values, &ranges, &free, damping);
+                let after = self.weighted_residual(model, &moved);
+                let there = energy(&after) + prior_energy(&ranges, &moved);
+                if there < cost {
+                    gained = cost - there;
+                    (values, base, cost) = (moved, after, there);
+                    damping = (damping * DAMPING_LOWERED).max(1e-9);
+                    break;
+                }
+                damping *= DAMPING_RAISED;
+            }
+            if gained <= NEGLIGIBLE_PART * cost {
+                break;
+            }
+        }
+        let cost = if cost.is_finite() { cost } else { f64::INFINITY };
+        Fit { model: model.clone(), values, energy: cost }
+    }
+
+    /// `start` fitted.
+    #[must_use]
+    pub fn fit(&self, model: &ContactModel, start: &[f64], effort: Effort) -> Fit {
+        self.fit_holding(model, start, effort, &|_| false)
+    }
+
+    /// The same with each row worth what the sensors and the position's uncertainty leave of it, under `fit`.
+    #[must_use]
+    pub fn weighed(&self, fit: &Fit) -> Self {
+        let weights = self.trials.iter().enumerate().map(|(number, trial)| {
+            let slope = stiffness_along(fit, trial, number);
+            let damping = fit.values[index::DAMPING];
+            let worth = |row: usize| {
+                let place = slope[row].powi(2) * trial.position_variance[row];
+                let speed = if slope[row] > 0.0 { damping.powi(2) * trial.velocity_variance[row] } else { 0.0 };
+                if trial.counts[row] { (trial.force_variance + place + speed).sqrt().recip() } else { 0.0 }
+            };
+            (0..trial.len()).map(worth).collect()
+        });
+        Self { trials: self.trials, weights: weights.collect() }
+    }
+}
+
+/// Change of the force with position along `trial`: by how much an error of the position shows.
+fn stiffness_along(fit: &Fit, trial: &ContactTrial, number: usize) -> Vec<f64> {
+    let step = 1e-3 * fit.model.scales.depth;
+    let at = |moved: f64| {
+        let mut values = fit.values.clone();
+        values[index::SURFACE] += moved;
+        fit.model.predicted(&values, trial, number)
+    };
+    let (before, after) = (at(-step), at(step));
+    before.iter().zip(&after).map(|(before, after)| ((after - before) / (2.0 * step)).abs()).collect()
+}
+
+fn prior_energy(ranges: &[Range], values: &[f64]) -> f64 {
+    let each = ranges.iter().zip(values).filter_map(|(range, value)| {
+        let (mean, deviation) = range.prior.filter(|_| range.free)?;
+        Some(((value - mean) / deviation).powi(2))
+    });
+    each.sum()
+}
+
+/// Normal equations of a linearised fit.
+struct Normal {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+impl Normal {
+    fn of(columns: Vec<Vec<f64>>, residual: &[f64], ranges: &[Range], free: &[usize], values: &[f64]) -> Self {
+        let count = columns.len();
+        let mut matrix = DMatrix::zeros(count, count);
+        for row in 0..count {
+            for column in 0..=row {
+                let product = dot(&columns[row], &columns[column]);
+                (matrix[(row, column)], matrix[(column, row)]) = (product, product);
+            }
+        }
+        let mut right = DVector::from_fn(count, |row, _| -dot(&columns[row], residual));
+        for (row, &at) in free.iter().enumerate() {
+            if let Some((mean, deviation)) = ranges[at].prior {
+                let step = ranges[at].size / deviation;
+                matrix[(row, row)] += step * step;
+                right[row] -= step * (values[at] - mean) / deviation;
+            }
+        }
+        Self { matrix, right }
+    }
+
+    /// `values` after a damped step; a value at an end of its range that would leave it is held.
+    fn step(&self, values: &[f64], ranges: &[Range], free: &[usize], damping: f64) -> Vec<f64> {
+        let mut held = vec![false; free.len()];
+        for _ in 0..=free.len() {
+            let open: Vec<usize> = (0..free.len()).filter(|nth| !held[*nth]).collect();
+            let least = 1e-12 * self.matrix.diagonal().max();
+            let damped = |row: usize, column: usize| {
+                let extra = if row == column { damping * self.matrix[(row, row)] + least } else { 0.0 };
+                self.matrix[(row, column)] + extra
+            };
+            let matrix = DMatrix::from_fn(open.len(), open.len(), |row, column| damped(open[row], open[column]));
+            let right = DVector::from_fn(open.len(), |row, _| self.right[open[row]]);
+            let Some(factors) = matrix.cholesky() else { return values.to_vec() };
+            let steps = factors.solve(&right);
+            let mut moved = values.to_vec();
+            for (&nth, step) in open.iter().zip(&steps) {
+                let (at, range) = (free[nth], &ranges[free[nth]]);
+                let longest = if range.by_factors { LONGEST_FACTOR } else { LONGEST_STEP };
+                let to = range.moved(values[at], step.max(-longest).min(longest));
+                held[nth] =
+                    (values[at] <= range.low && to < values[at]) || (values[at] >= range.high && to > values[at]);
+                moved[at] = to.max(range.low).min(range.high);
+            }
+            if open.iter().all(|nth| !held[*nth]) {
+                return moved;
+            }
+        }
+        values.to_vec()
+    }
+}
+
+/// What a fit leaves, in deviations of the sensors, and how much of it belongs together.
+#[derive(Debug, Clone)]
+pub struct Rest {
+    /// Weighted residual, trial after trial; zero where a row does not count.
+    pub rows: Vec<f64>,
+    /// Mean square of it, no less than what the sensors leave.
+    pub power: f64,
+    /// Rows that tell no more than one: integrated autocorrelation time, at least one.
+    pub correlated_rows: f64,
+}
+
+impl Rest {
+    /// What `fit` leaves of `data`.
+    #[must_use]
+    pub fn of(data: &Data<'_>, fit: &Fit) -> Self {
+        let rows = data.weighted_residual(&fit.model, &fit.values);
+        let power = energy(&rows) / data.rows().max(1) as f64;
+        let starts = data.starts();
+        let trials = starts.iter().zip(data.trials).map(|(start, trial)| &rows[*start..start + trial.len()]);
+        let correlated_rows = integrated_autocorrelation(&trials.collect::<Vec<_>>());
+        Self { power: power.max(1.0), correlated_rows, rows }
+    }
+}
+
+/// 1 + 2 sum of the autocorrelations up to a lag of six times itself (A. Sokal's window), in rows.
+fn integrated_autocorrelation(trials: &[&[f64]]) -> f64 {
+    let total: f64 = trials.iter().map(|rows| energy(rows)).sum();
+    let longest = trials.iter().map(|rows| rows.len()).max().unwrap_or(0) / 4;
+    let mut time = 1.0;
+    for lag in 1..longest {
+        let product: f64 = trials
+            .iter()
+            .filter(|rows| rows.len() > lag)
+            .map(|rows| dot(&rows[lag..], &rows[..rows.len() - lag]))
+            .sum();
+        time += 2.0 * product / total.max(f64::MIN_POSITIVE);
+        if lag as f64 >= 6.0 * time {
+            break;
+        }
+    }
+    time.max(1.0)
+}

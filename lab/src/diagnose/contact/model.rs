@@ -1,0 +1,341 @@
+//! The contact's law with the effects added to it: what the force sensor shows along a motion.
+
+use super::scales::Scales;
+use super::trial::ContactTrial;
+use crate::diagnose::model::Term;
+use crate::effects::contact_simulator::{ActiveEffect, ContactSimulator};
+use crate::effects::{Limit, Parameter, Place, Reading};
+use crate::rig::Contact;
+
+/// Places of the nominal values.
+pub mod index {
+    /// Stiffness K.
+    pub const STIFFNESS: usize = 0;
+    /// Damping B.
+    pub const DAMPING: usize = 1;
+    /// Position of the surface in the first trial.
+    pub const SURFACE: usize = 2;
+    /// Force late against position, s: a part of a recorded row, which no clock settles.
+    pub const TIMING: usize = 3;
+    /// How many all trials share.
+    pub const SHARED: usize = 4;
+}
+
+/// What every trial may have for itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OwnValues {
+    /// The surface lies elsewhere in each trial, by more than an encoder's start within its step.
+    pub surface: bool,
+    /// The force sensor's zero is another one in each trial.
+    pub zero: bool,
+    /// Another spot of the same body: all contact forces are greater or less by one factor.
+    pub scale: bool,
+}
+
+impl OwnValues {
+    /// None of them.
+    pub const NONE: Self = Self { surface: false, zero: false, scale: false };
+}
+
+/// The structure of the contact's law. Its values are a vector: the nominal ones, those of each trial, and those of each term in turn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactModel {
+    /// Force both ways.
+    pub bilateral: bool,
+    /// Reading of the sensor without a force, by the rig file.
+    pub force_zero: f64,
+    /// Trials.
+    pub trials: usize,
+    /// What each trial has for itself.
+    pub own: OwnValues,
+    /// Effects.
+    pub terms: Vec<Term>,
+    /// Sizes of the recordings.
+    pub scales: Scales,
+}
+
+/// How one value may move.
+#[derive(Debug, Clone, Copy)]
+pub struct Range {
+    /// Least value.
+    pub low: f64,
+    /// Greatest value.
+    pub high: f64,
+    /// A change that matters; of a value that moves by factors, none.
+    pub size: f64,
+    /// Whether it moves by factors: a size above zero that may be of any order.
+    pub by_factors: bool,
+    /// Whether it moves at all.
+    pub free: bool,
+    /// Value and deviation that are expected before anything was seen.
+    pub prior: Option<(f64, f64)>,
+}
+
+impl Range {
+    const fn linear(low: f64, high: f64, size: f64) -> Self {
+        Self { low, high, size, by_factors: false, free: true, prior: None }
+    }
+
+    /// `value` moved by `steps` of its size.
+    #[must_use]
+    pub fn moved(&self, value: f64, steps: f64) -> f64 {
+        if self.by_factors { value * steps.exp() } else { value + steps * self.size }
+    }
+}
+
+/// Deviation of a trial's own surface where it lies elsewhere, of the greatest depth.
+const SURFACE_PRIOR: f64 = 0.3;
+
+/// Deviation of a trial's own zero, of the greatest force.
+const ZERO_PRIOR: f64 = 0.1;
+
+/// Deviation of the logarithm of a trial's own factor: spots of one body differ by factors of 1.2 to 1.7.
+const SCALE_PRIOR: f64 = 0.4;
+
+impl ContactModel {
+    /// The same with one more effect.
+    #[must_use]
+    pub fn with(&self, term: Term) -> Self {
+        let mut more = self.clone();
+        more.terms.push(term);
+        more
+    }
+
+    /// Values that are no effect's.
+    #[must_use]
+    pub fn nominal_count(&self) -> usize {
+        let each = usize::from(self.own.zero) + usize::from(self.own.scale);
+        index::SHARED + self.trials.saturating_sub(1) * (1 + each)
+    }
+
+    /// Where the values of term `at` begin.
+    #[must_use]
+    pub fn first_value_of(&self, at: usize) -> usize {
+        self.nominal_count() + self.terms[..at].iter().map(|term| self.count_of(term)).sum::<usize>()
+    }
+
+    /// Values of `term`.
+    #[must_use]
+    pub fn count_of(&self, term: &Term) -> usize {
+        term.all_parameters(self.trials).len()
+    }
+
+    /// How many values there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.first_value_of(self.terms.len())
+    }
+
+    /// Values that are fitted and no trial's own place within an encoder's step.
+    #[must_use]
+    pub fn free_count(&self) -> usize {
+        self.ranges(&vec![1.0; self.count()]).iter().filter(|range| range.free).count()
+    }
+
+    fn own_value(&self, values: &[f64], trial: usize, nth: usize) -> f64 {
+        let others = self.trials - 1;
+        if trial == 0 { 0.0 } else { values[index::SHARED + nth * others + trial - 1] }
+    }
+
+    /// Position of the surface in trial `trial`.
+    #[must_use]
+    pub fn surface(&self, values: &[f64], trial: usize) -> f64 {
+        values[index::SURFACE] + self.own_value(values, trial, 0)
+    }
+
+    /// Zero of the sensor in trial `trial`, beside that of the rig file.
+    #[must_use]
+    pub fn zero(&self, values: &[f64], trial: usize) -> f64 {
+        if self.own.zero { self.own_value(values, trial, 1) } else { 0.0 }
+    }
+
+    /// Factor of the contact's force in trial `trial`.
+    #[must_use]
+    pub fn scale(&self, values: &[f64], trial: usize) -> f64 {
+        if self.own.scale { self.own_value(values, trial, 1 + usize::from(self.own.zero)).exp() } else { 1.0 }
+    }
+
+    /// The trial that value `at` belongs to alone; `None` where it is shared.
+    #[must_use]
+    pub fn owner(&self, at: usize) -> Option<usize> {
+        let others = self.trials - 1;
+        if at < index::SHARED || others == 0 {
+            return None;
+        }
+        if at < self.nominal_count() {
+            return Some(1 + (at - index::SHARED) % others);
+        }
+        let term = (0..self.terms.len()).rev().find(|term| at >= self.first_value_of(*term))?;
+        let (first, own) = (self.first_value_of(term), self.terms[term].parameters());
+        let offset = at - first;
+        let each = own.iter().filter(|parameter| parameter.each_trial).count();
+        if offset < own.len() {
+            return own[offset].each_trial.then_some(0);
+        }
+        Some(1 + (offset - own.len()) / each)
+    }
+
+    /// How each value may move.
+    #[must_use]
+    pub fn ranges(&self, values: &[f64]) -> Vec<Range> {
+        let scales = &self.scales;
+        let stiff = scales.stiffness();
+        let late = 0.5 * scales.source_step_s;
+        let place = 0.05 * scales.depth;
+        let mut ranges = vec![
+            Range::linear(0.0, 1e3 * stiff, values[index::STIFFNESS].abs().max(1e-3 * stiff)),
+            Range::linear(0.0, f64::INFINITY, values[index::DAMPING].abs().max(0.02 * scales.force / scales.speed)),
+            Range::linear(f64::NEG_INFINITY, f64::INFINITY, place),
+            Range::linear(-late, late, late),
+        ];
+        let others = self.trials - 1;
+        let within_step = 0.5 * scales.resolution;
+        for _ in 0..others {
+            ranges.push(if self.own.surface {
+                let prior = Some((0.0, SURFACE_PRIOR * scales.depth));
+                Range { prior, ..Range::linear(f64::NEG_INFINITY, f64::INFINITY, place) }
+            } else {
+                let prior = Some((0.0, within_step.max(f64::MIN_POSITIVE)));
+                Range { free: within_step > 0.0, prior, ..Range::linear(-within_step, within_step, within_step) }
+            });
+        }
+        let mut each = |is_there: bool, deviation: f64| {
+            let range = Range {
+                prior: Some((0.0, deviation)),
+                ..Range::linear(f64::NEG_INFINITY, f64::INFINITY, 0.1 * deviation)
+            };
+            ranges.extend(std::iter::repeat_n(range, if is_there { others } else { 0 }));
+        };
+        each(self.own.zero, ZERO_PRIOR * scales.force);
+        each(self.own.scale, SCALE_PRIOR);
+        for (at, term) in self.terms.iter().enumerate() {
+            let start = self.first_value_of(at);
+            for (offset, parameter) in term.all_parameters(self.trials).iter().enumerate() {
+                ranges.push(self.term_range(parameter, values[start + offset]));
+            }
+        }
+        ranges
+    }
+
+    fn term_range(&self, parameter: &Parameter, value: f64) -> Range {
+        let scales = &self.scales;
+        let (mut low, mut high) = (parameter.low, parameter.high);
+        match parameter.limit {
+            Limit::ResolvableTime => low = low.max(2.0 * scales.step_s),
+            Limit::ReachedRange => low = low.max(0.15 * scales.force),
+            Limit::RepeatedCycles => low = low.max(1.8 / scales.duration_s),
+            Limit::RepeatedPitch => (low, high) = (low.max(2.0 * scales.resolution), high.min(scales.travel() / 1.4)),
+            Limit::BoundsOnly | Limit::ResonanceInBand | Limit::MinSpeed => {}
+        }
+        let by_factors = parameter.low >= 0.0 && parameter.high.is_infinite() && value > 0.0;
+        let size = if value == 0.0 { 1e-3 } else { value.abs() };
+        let prior = None;
+        Range { low, high, size, by_factors, free: !parameter.fixed, prior }
+    }
+
+    /// Whether a value of an effect ended at an end of what the recordings can show.
+    #[must_use]
+    pub fn is_at_end(&self, values: &[f64]) -> bool {
+        let ranges = self.ranges(values);
+        self.terms.iter().enumerate().any(|(nth, term)| {
+            let start = self.first_value_of(nth);
+            term.all_parameters(self.trials).iter().enumerate().any(|(offset, parameter)| {
+                let (range, value) = (&ranges[start + offset], values[start + offset]);
+                let near = |end: f64| end.is_finite() && end != 0.0 && (value - end).abs() <= 1e-6 * end.abs();
+                parameter.limit != Limit::BoundsOnly && (near(range.low) || near(range.high))
+            })
+        })
+    }
+
+    /// Force that the sensor shows along `trial`, whose number is `number`.
+    #[must_use]
+    pub fn predicted(&self, values: &[f64], trial: &ContactTrial, number: usize) -> Vec<f64> {
+        let contact = Contact {
+            surface: self.surface(values, number),
+            stiffness: values[index::STIFFNESS],
+            damping: values[index::DAMPING],
+            bilateral: self.bilateral,
+        };
+        let held = self.acting(Place::Contact, values, number);
+        let actives: Vec<ActiveEffect<'_>> = held.iter().map(active).collect();
+        let mut law = ContactSimulator::new(contact, &actives);
+        let scale = self.scale(values, number);
+        let mut before = trial.time.first().copied().unwrap_or(0.0);
+        let mut force: Vec<f64> = (0..trial.len())
+            .map(|row| {
+                let step = trial.time[row] - before;
+                before = trial.time[row];
+                let (position, velocity) = (trial.position[row], trial.velocity[row]);
+                scale * law.step(trial.time[row], step, position, velocity, trial.acceleration[row], 0.0)
+            })
+            .collect();
+        self.sense(values, trial, number, &mut force);
+        force
+    }
+
+    /// What the sensor makes of the force on the tool.
+    fn sense(&self, values: &[f64], trial: &ContactTrial, number: usize, force: &mut [f64]) {
+        shift(force, values[index::TIMING], trial.step_s);
+        let mut sensors = self.acting(Place::Sensor, values, number);
+        sensors.sort_by_key(|held| held.0.effect.spec().stage);
+        // A row that is a mean has passed a window, which is narrower than what any effect of the sensor tells.
+        let width = if trial.step_s > 1.5 * trial.source_step_s { trial.step_s / 12f64.sqrt() } else { 0.0 };
+        for (term, own) in &sensors {
+            let mut reading = Reading {
+                start: trial.time.first().copied().unwrap_or(0.0),
+                step: trial.step_s,
+                filter_width: 0.0,
+                added_filter_width: width,
+                acceleration: &trial.acceleration,
+                force,
+            };
+            term.effect.act_on_reading(term.form, own, &mut reading);
+        }
+        let zero = self.force_zero + self.zero(values, number);
+        force.iter_mut().for_each(|force| *force += zero);
+    }
+
+    fn acting(&self, place: Place, values: &[f64], trial: usize) -> Vec<(Term, Vec<f64>)> {
+        let terms = self.terms.iter().enumerate().filter(|(_, term)| term.effect.spec().place == place);
+        terms
+            .map(|(at, term)| {
+                let start = self.first_value_of(at);
+                (*term, term.in_trial(&values[start..start + self.count_of(term)], trial))
+            })
+            .collect()
+    }
+
+    /// How often an effect of that name is held.
+    #[must_use]
+    pub fn times(&self, name: &str) -> usize {
+        self.terms.iter().filter(|term| term.name() == name).count()
+    }
+
+    /// The names of its terms from number `first` on, each once.
+    #[must_use]
+    pub fn names(&self, first: usize) -> Vec<&'static str> {
+        let mut names: Vec<&'static str> = self.terms[first.min(self.terms.len())..].iter().map(Term::name).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+}
+
+fn active(held: &(Term, Vec<f64>)) -> ActiveEffect<'_> {
+    ActiveEffect { effect: held.0.effect, form: held.0.form, values: &held.1 }
+}
+
+/// `force` later by `late`, which is a part of a row: its first order is all of it.
+fn shift(force: &mut [f64], late: f64, step: f64) {
+    if late == 0.0 || force.len() < 2 {
+        return;
+    }
+    let part = 0.5 * late / step;
+    let mut before = force[0];
+    for row in 0..force.len() {
+        let here = force[row];
+        let after = force.get(row + 1).copied().unwrap_or(here);
+        force[row] = here - part * (after - before);
+        before = here;
+    }
+}

@@ -1,0 +1,359 @@
+//! What the recordings say of a contact: the law, its evidence, what else would do, and what is left.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF as _};
+
+use super::criteria::{
+    LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_VUONG, MOST_LEFT, NOTABLE_POWER, TOLD_SHARE,
+    UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
+};
+use super::fit::{Data, Effort, Fit, Rest};
+use super::held_out::{Folds, HeldOut, rms};
+use super::interval::intervals;
+use super::model::{ContactModel, OwnValues, index};
+use super::scales::Scales;
+use super::selection::{Chosen, Search};
+use super::trial::ContactTrial;
+use crate::diagnose::model::Term;
+use crate::effects::{Place, Resolved};
+use crate::rig::Contact;
+
+/// What a rig file says of a contact.
+#[derive(Clone)]
+pub struct NominalContact {
+    /// Spring, damper and surface.
+    pub contact: Contact,
+    /// Reading of the sensor without a force.
+    pub force_zero: f64,
+    /// Whether positions are angles.
+    pub is_rotary: bool,
+    /// Effects that it already holds: nominal, and refitted like the other values.
+    pub effects: Vec<Resolved>,
+}
+
+/// A named effect.
+#[derive(Debug, Clone)]
+pub struct NamedTerm {
+    /// Its place among the terms of the model.
+    pub at: usize,
+    /// Share of the held-out power above the noise that it takes, beside the others.
+    pub held_out_share: f64,
+    /// Likelihood-ratio test of it, rows that belong together counted once, Bonferroni over all that were tried.
+    pub p_value: f64,
+}
+
+/// A set of effects that the recordings do not tell from the answer.
+#[derive(Debug, Clone)]
+pub struct Alternative {
+    /// Its effects.
+    pub names: Vec<&'static str>,
+    /// Share of the held-out mismatch that it takes.
+    pub held_out_share: f64,
+    /// Its law.
+    pub fit: Fit,
+}
+
+/// An effect tried alone.
+#[derive(Debug, Clone, Copy)]
+pub struct Single {
+    /// Its name.
+    pub name: &'static str,
+    /// Share of the power above the noise that it takes, rows of its fit.
+    pub share: f64,
+    /// Likelihood-ratio test of it, for itself.
+    pub p_value: f64,
+}
+
+pub use crate::diagnose::drive::outcome::Finding;
+
+/// Everything found of a contact.
+pub struct Outcome {
+    /// The trials, as they were looked at.
+    pub trials: Vec<ContactTrial>,
+    /// What each row is worth: one over its expected deviation.
+    pub weights: Vec<Vec<f64>>,
+    /// How it stands.
+    pub finding: Finding,
+    /// The refitted nominal law.
+    pub nominal: Fit,
+    /// Terms that the rig file already holds.
+    pub known_terms: usize,
+    /// The law with its effects.
+    pub chosen: Fit,
+    /// 95 % interval of each of its values.
+    pub intervals: Vec<[f64; 2]>,
+    /// The effects that are named.
+    pub named: Vec<NamedTerm>,
+    /// What else would do.
+    pub alternatives: Vec<Alternative>,
+    /// Every effect tried alone, the strongest first.
+    pub singles: Vec<Single>,
+    /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects, on rows that no fit saw, a
+    /// column a trial.
+    pub residuals: [Vec<Vec<f64>>; 3],
+    /// What the sensors alone leave, N or N m in root mean square.
+    pub expected_noise: f64,
+}
+
+/// Fewest rows that a contact is identified from.
+const FEWEST_ROWS: usize = 16;
+
+/// Rows that a law is fitted to, of all trials together: more are taken together in means.
+const MOST_ROWS: usize = 45_000;
+
+/// Rows that effects are looked for in.
+const COARSE_ROWS: usize = 8_000;
+
+/// Rows of a recording that become one.
+#[must_use]
+pub fn thinning(rows: usize) -> usize {
+    rows.div_ceil(MOST_ROWS).max(1)
+}
+
+/// The same for the search.
+#[must_use]
+pub fn coarse_thinning(rows: usize) -> usize {
+    let fine = thinning(rows);
+    (rows / fine).div_ceil(COARSE_ROWS).max(1) * fine
+}
+
+/// Identifies the contact of `trials`, and of `coarse`, means of more rows of the same; `None` where they show too little.
+#[must_use]
+pub fn identify(
+    trials: Vec<ContactTrial>,
+    coarse: &[ContactTrial],
+    rig: &NominalContact,
+    say: &dyn Fn(&str),
+) -> Option<Outcome> {
+    let rows: usize = trials.iter().map(ContactTrial::len).sum();
+    if rows < FEWEST_ROWS || trials.iter().any(|trial| trial.len() < 4) {
+        return None;
+    }
+    let model = nominal_model(&trials, rig);
+    let start = given_values(&model, rig);
+    let flat = |trials: &[ContactTrial]| -> Vec<Vec<f64>> {
+        let worth = |trial: &ContactTrial| {
+            let weight = trial.force_variance.sqrt().recip();
+            trial.counts.iter().map(|counts| if *counts { weight } else { 0.0 }).collect()
+        };
+        trials.iter().map(worth).collect()
+    };
+    say("the contact: nominal values");
+    let first = nominal_fit(&Data { trials: &trials, weights: flat(&trials) }, &model, &start);
+    let data = Data { trials: &trials, weights: flat(&trials) }.weighed(&first);
+    let nominal = data.fit(&model, &first.values, Effort::FULL);
+    let coarse = Data { trials: coarse, weights: flat(coarse) }.weighed(&nominal);
+    let mut search = Search { data, coarse, nominal };
+    let chosen = search.run(say);
+    say("the contact: what is left");
+    let mut outcome = judged(&search, chosen, &start);
+    outcome.weights.clone_from(&search.data.weights);
+    outcome.trials.clone_from(&trials);
+    Some(outcome)
+}
+
+fn nominal_model(trials: &[ContactTrial], rig: &NominalContact) -> ContactModel {
+    let contact = rig.contact;
+    let terms = rig.effects.iter().filter(|effect| effect.effect.spec().place != Place::Drive);
+    ContactModel {
+        bilateral: contact.bilateral,
+        force_zero: rig.force_zero,
+        trials: trials.len(),
+        own: OwnValues::NONE,
+        terms: terms.map(|effect| Term { effect: effect.effect, form: effect.form }).collect(),
+        scales: Scales::of(trials, contact.surface, contact.bilateral, contact.stiffness, rig.is_rotary),
+    }
+}
+
+fn given_values(model: &ContactModel, rig: &NominalContact) -> Vec<f64> {
+    let mut values = vec![0.0; model.nominal_count()];
+    values[index::STIFFNESS] = rig.contact.stiffness;
+    values[index::DAMPING] = rig.contact.damping;
+    values[index::SURFACE] = rig.contact.surface;
+    for effect in rig.effects.iter().filter(|effect| effect.effect.spec().place != Place::Drive) {
+        let term = Term { effect: effect.effect, form: effect.form };
+        values.extend(term.spread(&effect.values, model.trials));
+    }
+    values
+}
+
+/// Surfaces that the nominal fit starts from, of the travel above its least position: a rig file can be far off.
+const SURFACE_STARTS: [f64; 4] = [0.1, 0.35, 0.6, 0.85];
+
+fn nominal_fit(data: &Data<'_>, model: &ContactModel, start: &[f64]) -> Fit {
+    let mut best = data.fit(model, start, Effort::FULL);
+    if !model.bilateral {
+        for part in SURFACE_STARTS {
+            let mut moved = start.to_vec();
+            moved[index::SURFACE] = model.scales.positions[0] + part * model.scales.travel();
+            let fit = data.fit(model, &moved, Effort::QUICK);
+            if fit.energy < 0.9 * best.energy {
+                let fit = data.fit(model, &fit.values, Effort::FULL);
+                if fit.energy < best.energy {
+                    best = fit;
+                }
+            }
+        }
+    }
+    best
+}
+
+fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
+    let data = &search.data;
+    let folds = Folds::of(data);
+    let given = as_given(search, start);
+    let refitted = folds.held_out(data, &search.nominal);
+    let (fit, improved, named) = believed(search, &folds, chosen.fit.clone());
+    let rest = Rest::of(data, &fit);
+    let columns = |fit: &Fit| -> Vec<Vec<f64>> {
+        (0..data.trials.len()).map(|trial| data.residual(&fit.model, &fit.values, trial)).collect()
+    };
+    let given_residual = columns(&given);
+    Outcome {
+        trials: Vec::new(),
+        weights: Vec::new(),
+        finding: finding(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]),
+        nominal: search.nominal.clone(),
+        known_terms: search.nominal.model.terms.len(),
+        intervals: intervals(data, &fit, &rest, &improved.values),
+        alternatives: alternatives(search, &folds, &fit, &chosen, &refitted),
+        named,
+        singles: singles(search, &chosen),
+        residuals: [given_residual, refitted.residual, improved.residual],
+        expected_noise: expected_noise(data),
+        chosen: fit,
+    }
+}
+
+/// The rig file's values, with what no file can state: timing, and where each encoder starts within its step.
+fn as_given(search: &Search<'_>, start: &[f64]) -> Fit {
+    let mut given = search.nominal.clone();
+    let moved = given.values[index::SURFACE] - start[index::SURFACE];
+    let within = 0.5 * given.model.scales.resolution;
+    given.values[..index::TIMING].copy_from_slice(&start[..index::TIMING]);
+    given.values[index::SURFACE] += moved.clamp(-within, within);
+    let first = given.model.nominal_count();
+    given.values[first..].copy_from_slice(&start[first..]);
+    given
+}
+
+fn expected_noise(data: &Data<'_>) -> f64 {
+    let rows = data.weights.iter().flatten().filter(|weight| **weight > 0.0);
+    let (sum, count) = rows.fold((0.0, 0usize), |(sum, count), weight| (sum + weight.powi(-2), count + 1));
+    (sum / count.max(1) as f64).sqrt()
+}
+
+/// The effects that unseen rows confirm, with what each takes of them.
+fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
+    let data = &search.data;
+    let expected = data.rows() as f64;
+    loop {
+        let held = folds.held_out(data, &fit);
+        let first = search.nominal.model.terms.len();
+        let without: Vec<(Fit, f64)> = (first..fit.model.terms.len())
+            .map(|at| {
+                let less = search.without(&fit, at);
+                let left = folds.held_out(data, &less).energy;
+                (less, left)
+            })
+            .collect();
+        let share = |left: f64| {
+            let taken = left - held.energy;
+            if taken > 0.0 { taken / (left - expected).max(taken) } else { 0.0 }
+        };
+        let needless = (0..without.len()).filter(|nth| share(without[*nth].1) < LEAST_HELD_OUT_SHARE);
+        if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
+            fit = without[nth].0.clone();
+            continue;
+        }
+        let tried = 150.0;
+        let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
+            at: first + nth,
+            held_out_share: share(*left).clamp(0.0, 1.0),
+            p_value: (tried * likelihood_ratio(search, &fit, less)).min(1.0),
+        });
+        let named = named.collect();
+        return (fit, held, named);
+    }
+}
+
+/// Probability of as large a likelihood ratio where the smaller model is true (Wilks).
+fn likelihood_ratio(search: &Search<'_>, more: &Fit, less: &Fit) -> f64 {
+    let values = more.model.free_count().saturating_sub(less.model.free_count()).max(1) as f64;
+    let ratio = 2.0 * search.worth(more, less).gain.max(0.0);
+    ChiSquared::new(values).map_or(1.0, |chi| chi.sf(ratio))
+}
+
+fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
+    let expected = search.coarse.rows() as f64;
+    let before = search.coarse.fit(&search.nominal.model, &search.nominal.values, Effort::QUICK);
+    let rest = Rest::of(&search.coarse, &before);
+    let mut all: Vec<Single> = Vec::new();
+    for fit in &chosen.singles {
+        let Some(term) = fit.model.terms.get(search.nominal.model.terms.len()) else { continue };
+        if all.iter().any(|single| single.name == term.name()) {
+            continue;
+        }
+        let taken = before.energy - fit.energy;
+        let values = fit.model.free_count().saturating_sub(before.model.free_count()).max(1) as f64;
+        let ratio = (taken / (rest.power * rest.correlated_rows)).max(0.0);
+        all.push(Single {
+            name: term.name(),
+            share: (taken / (before.energy - expected).max(taken.abs()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0),
+            p_value: ChiSquared::new(values).map_or(1.0, |chi| chi.sf(ratio)),
+        });
+    }
+    all.sort_by(|a, b| b.share.total_cmp(&a.share));
+    all
+}
+
+/// Alternatives that are told.
+const MOST_ALTERNATIVES: usize = 3;
+
+/// Sets that were fitted in full and are neither refused by the likelihood nor told like the answer.
+fn alternatives(search: &Search<'_>, folds: &Folds, fit: &Fit, chosen: &Chosen, refitted: &HeldOut) -> Vec<Alternative> {
+    let first = search.nominal.model.terms.len();
+    if fit.model.terms.len() == first {
+        return Vec::new();
+    }
+    let expected = search.data.rows() as f64;
+    let is_open = |other: &&Fit| {
+        let worth = search.worth(fit, other);
+        other.model.names(first) != fit.model.names(first)
+            && other.model.terms.len() <= fit.model.terms.len()
+            && (worth.gain < LEAST_GAIN || worth.vuong < LEAST_VUONG)
+            && search.is_worth(other, &search.nominal)
+    };
+    let open = chosen.sets.iter().filter(is_open).take(MOST_ALTERNATIVES);
+    let told = open.map(|other| {
+        let taken = refitted.energy - folds.held_out(&search.data, other).energy;
+        let share = taken / (refitted.energy - expected).max(taken.abs()).max(f64::MIN_POSITIVE);
+        Alternative { names: other.model.names(first), held_out_share: share.clamp(0.0, 1.0), fit: other.clone() }
+    });
+    told.collect()
+}
+
+fn finding(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Finding {
+    let data = &search.data;
+    let expected = data.rows() as f64;
+    let rest = Rest::of(data, fit);
+    let left = (fit.energy - expected).max(0.0);
+    let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
+    let is_notable =
+        rest.power > NOTABLE_POWER && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE);
+    if named.is_empty() {
+        let refitted = rms(data, &held[0].residual);
+        return if is_notable {
+            Finding::Unknown
+        } else if given > VALUES_MATTER * refitted {
+            Finding::Parameters
+        } else {
+            Finding::NoMismatch
+        };
+    }
+    let is_told = 1.0 - left / all > TOLD_SHARE;
+    if is_notable && (!is_told || rest.power > MOST_LEFT * search.nominal.energy / expected) {
+        Finding::PartlyExplained
+    } else {
+        Finding::Explained
+    }
+}

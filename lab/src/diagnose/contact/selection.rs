@@ -1,0 +1,359 @@
+//! Which effects the recordings ask for: sets grown from the best few, exchanged and pruned.
+
+use rayon::prelude::*;
+
+use super::criteria::{
+    LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_VUONG,
+};
+use super::fit::{Data, Effort, Fit, Rest};
+use super::model::{ContactModel, OwnValues, index};
+use super::projection::{Projection, Promise};
+use crate::diagnose::drive::selection::vuong;
+
+/// What a search works on.
+pub struct Search<'a> {
+    /// The trials, each row with its worth.
+    pub data: Data<'a>,
+    /// The same in means of several rows, which effects are looked for in.
+    pub coarse: Data<'a>,
+    /// The nominal law, refitted.
+    pub nominal: Fit,
+}
+
+/// What was chosen, and what was tried on the way.
+pub struct Chosen {
+    /// The law with its effects.
+    pub fit: Fit,
+    /// Every effect alone beside the nominal law, the best first.
+    pub singles: Vec<Fit>,
+    /// Every set that was fitted in full.
+    pub sets: Vec<Fit>,
+}
+
+/// What a larger model has over a smaller one.
+#[derive(Debug, Clone, Copy)]
+pub struct Worth {
+    /// Log likelihood, nats, rows that belong together counted once.
+    pub gain: f64,
+    /// Share of what the smaller leaves above the sensors' noise.
+    pub share: f64,
+    /// What it takes, in root mean square, over all that the nominal law leaves above the noise.
+    pub part_of_all: f64,
+    /// The same over the force's deviation.
+    pub part_of_force: f64,
+    /// Vuong's statistic over blocks.
+    pub vuong: f64,
+}
+
+/// Sets that each round grows from.
+const BEAM: usize = 2;
+
+/// Promises of a round that are fitted.
+const TRIED: usize = 14;
+
+/// Of these, how many are fitted to the end.
+const COARSELY_POLISHED: usize = 8;
+
+/// And of these, on every row.
+const POLISHED: usize = 5;
+
+/// Effects at most.
+const MOST_TERMS: usize = 4;
+
+/// Other surfaces that a law's search starts from where much is missing, of the depth.
+const SURFACES: [f64; 3] = [-0.3, 0.15, 0.4];
+
+/// Blocks that likelihoods are compared over, and integrated autocorrelation times that a block is long at the least.
+const BLOCKS: usize = 40;
+const BLOCK_TIMES: f64 = 3.0;
+
+impl Search<'_> {
+    /// Sum of squares that the sensors alone leave.
+    fn expected(&self) -> f64 {
+        self.data.rows() as f64
+    }
+
+    /// What `more` has over `less`.
+    #[must_use]
+    pub fn worth(&self, more: &Fit, less: &Fit) -> Worth {
+        let (rest, before) = (Rest::of(&self.data, more), Rest::of(&self.data, less));
+        let taken = less.energy - more.energy;
+        let above = |energy: f64| (energy - self.expected()).max(0.0);
+        let scale = 0.5 / (rest.power * rest.correlated_rows);
+        let logs = |rows: &[f64]| -> Vec<f64> { rows.iter().map(|row| -scale * row * row).collect() };
+        let block = (self.data.rows() / BLOCKS).max((BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
+        Worth {
+            gain: scale * taken,
+            share: taken.max(0.0) / above(less.energy).max(taken.max(f64::MIN_POSITIVE)),
+            part_of_all: (taken.max(0.0) / above(self.nominal.energy).max(taken.max(f64::MIN_POSITIVE))).sqrt(),
+            part_of_force: self.part_of_force(taken),
+            vuong: vuong(&logs(&rest.rows), &logs(&before.rows), block),
+        }
+    }
+
+    /// What squares of a weighted residual are, in root mean square, of the force's deviation.
+    #[must_use]
+    pub fn part_of_force(&self, energy: f64) -> f64 {
+        (energy.max(0.0) / self.force_energy()).sqrt()
+    }
+
+    /// Squares of the force about its mean, each over its deviation.
+    fn force_energy(&self) -> f64 {
+        let rows = || self.data.trials.iter().zip(&self.data.weights).flat_map(|(trial, weights)| trial.force.iter().zip(weights));
+        let weight: f64 = rows().map(|(_, weight)| weight * weight).sum();
+        let mean = rows().map(|(force, weight)| force * weight * weight).sum::<f64>() / weight.max(f64::MIN_POSITIVE);
+        rows().map(|(force, weight)| ((force - mean) * weight).powi(2)).sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether `more` is worth its values.
+    #[must_use]
+    pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
+        let values = free(more).saturating_sub(free(less)).max(1);
+        let worth = self.worth(more, less);
+        worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
+            && worth.share > LEAST_SHARE
+            && worth.part_of_all > LEAST_PART_OF_ALL
+            && worth.part_of_force > LEAST_PART_OF_FORCE
+            && worth.vuong > LEAST_VUONG
+    }
+
+    /// Squares that are left, with what each value has to earn.
+    fn price(&self, fit: &Fit, scale: f64) -> f64 {
+        scale * fit.energy + LEAST_GAIN_PER_VALUE * free(fit) as f64
+    }
+
+    /// Runs the search, telling `say` how it goes.
+    #[must_use]
+    pub fn run(&mut self, say: &dyn Fn(&str)) -> Chosen {
+        let mut best = self.nominal.clone();
+        let mut beam = vec![best.clone()];
+        let (mut singles, mut sets): (Vec<Fit>, Vec<Fit>) = (Vec::new(), Vec::new());
+        let mut waiting = 0;
+        for round in 0..MOST_TERMS + 1 {
+            say(&format!("the contact: {round} effects and one more"));
+            let mut grown: Vec<Fit> = Vec::new();
+            for base in &beam {
+                let quick = self.grown(base);
+                if round == 0 {
+                    singles.clone_from(&quick);
+                }
+                grown.extend(self.polished(quick));
+            }
+            grown.retain(|fit| !fit.model.is_at_end(&fit.values));
+            grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+            let Some(least) = grown.first() else { break };
+            let rest = Rest::of(&self.data, least);
+            let scale = 0.5 / (rest.power * rest.correlated_rows);
+            grown.sort_by(|a, b| self.price(a, scale).total_cmp(&self.price(b, scale)));
+            let grown = distinct(grown);
+            sets.extend(grown.iter().cloned());
+            let top = grown.iter().find(|fit| self.is_worth(fit, &best));
+            match top {
+                Some(top) => {
+                    best = top.clone();
+                    waiting = 0;
+                }
+                // Two effects can be worth it where neither is alone.
+                None => waiting += 1,
+            }
+            if waiting > 1 || best.energy < 1.02 * self.expected() {
+                break;
+            }
+            beam = grown.into_iter().filter(|fit| fit.model.terms.len() <= MOST_TERMS).take(BEAM).collect();
+            if waiting == 0 && beam.iter().all(|fit| fit.model != best.model) {
+                beam.truncate(BEAM - 1);
+                beam.push(best.clone());
+            }
+        }
+        say("the contact: without each effect");
+        let fit = self.pruned(best);
+        let fit = self.exchanged(fit, say);
+        Chosen { fit, singles, sets }
+    }
+
+    /// `base` with each promising effect, and with what each trial may have for itself, the best first.
+    fn grown(&self, base: &Fit) -> Vec<Fit> {
+        let data = &self.coarse;
+        let model = &base.model;
+        let stiffness = base.values[index::STIFFNESS];
+        let excitation =
+            model.scales.excitation(data.trials, stiffness, base.values[index::SURFACE], model.bilateral);
+        let promises = Projection::of(data, base).promises(&excitation);
+        let mut tried: Vec<Fit> =
+            promises.par_iter().take(TRIED).map(|promise| self.with_effect(base, promise)).collect();
+        tried.par_extend(own_values(model).into_par_iter().map(|own| {
+            let model = ContactModel { own, ..model.clone() };
+            let start = moved_values(base, &model);
+            data.fit(&model, &start, Effort::QUICK)
+        }));
+        tried.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        tried
+    }
+
+    /// `base` with an effect, from where it stands and from other surfaces: what is missing bends the nominal values.
+    fn with_effect(&self, base: &Fit, promise: &Promise) -> Fit {
+        let model = base.model.with(promise.term);
+        let start: Vec<f64> = base.values.iter().chain(&promise.values).copied().collect();
+        let mut best = self.coarse.fit(&model, &start, Effort::QUICK);
+        if !model.bilateral && base.energy > 4.0 * self.coarse.rows() as f64 {
+            for part in SURFACES {
+                let mut moved = start.clone();
+                moved[index::SURFACE] += part * model.scales.depth;
+                let fit = self.coarse.fit(&model, &moved, Effort::QUICK);
+                if fit.energy < best.energy {
+                    best = fit;
+                }
+            }
+        }
+        best
+    }
+
+    /// The best of `quick`, one of each set of names, to the end.
+    fn polished(&self, quick: Vec<Fit>) -> Vec<Fit> {
+        let mut fits: Vec<Fit> = quick.into_iter().take(COARSELY_POLISHED).collect();
+        fits.par_iter_mut().for_each(|fit| *fit = self.coarse.fit(&fit.model, &fit.values, Effort::FULL));
+        fits.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        fits.truncate(POLISHED);
+        fits.par_iter().map(|fit| self.data.fit(&fit.model, &fit.values, Effort::FULL)).collect()
+    }
+
+    /// `best` without the effects that are not worth having beside the others.
+    #[must_use]
+    pub fn pruned(&self, mut best: Fit) -> Fit {
+        'again: loop {
+            for at in (self.nominal.model.terms.len()..best.model.terms.len()).rev() {
+                let less = self.without(&best, at);
+                if !self.is_worth(&best, &less) {
+                    best = less;
+                    continue 'again;
+                }
+            }
+            for own in fewer_own_values(&best.model) {
+                let model = ContactModel { own, ..best.model.clone() };
+                let less = self.data.fit(&model, &moved_values(&best, &model), Effort::FULL);
+                if !self.is_worth(&best, &less) {
+                    best = less;
+                    continue 'again;
+                }
+            }
+            return best;
+        }
+    }
+
+    /// `best` with each effect exchanged for another that does better in its place.
+    fn exchanged(&self, mut best: Fit, say: &dyn Fn(&str)) -> Fit {
+        say("the contact: another effect in the place of each");
+        let first = self.nominal.model.terms.len();
+        for _ in 0..2 {
+            let rest = Rest::of(&self.data, &best);
+            let scale = 0.5 / (rest.power * rest.correlated_rows);
+            let own = self.price(&best, scale);
+            let mut better: Option<Fit> = None;
+            for at in first..best.model.terms.len() {
+                let less = self.without(&best, at);
+                for fit in self.polished(self.grown(&less)) {
+                    let is_open = !fit.model.is_at_end(&fit.values) && fit.model.terms.len() <= best.model.terms.len();
+                    let price = self.price(&fit, scale);
+                    if is_open && price < own - LEAST_GAIN && better.as_ref().is_none_or(|b| price < self.price(b, scale)) {
+                        better = Some(fit);
+                    }
+                }
+            }
+            let Some(fit) = better else { break };
+            best = self.pruned(fit);
+        }
+        best
+    }
+
+    /// `fit` without term `at`, refitted.
+    #[must_use]
+    pub fn without(&self, fit: &Fit, at: usize) -> Fit {
+        let (model, values) = without_term(fit, at);
+        if model == self.nominal.model {
+            return self.nominal.clone();
+        }
+        self.data.fit(&model, &values, Effort::FULL)
+    }
+}
+
+/// Values that are fitted.
+fn free(fit: &Fit) -> usize {
+    fit.model.free_count()
+}
+
+/// Model and values of `fit` without term `at`.
+#[must_use]
+pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
+    let start = fit.model.first_value_of(at);
+    let mut values = fit.values.clone();
+    values.drain(start..start + fit.model.count_of(&fit.model.terms[at]));
+    let mut model = fit.model.clone();
+    model.terms.remove(at);
+    (model, values)
+}
+
+/// What each trial may have for itself beside what it has.
+fn own_values(model: &ContactModel) -> Vec<OwnValues> {
+    if model.trials < 2 {
+        return Vec::new();
+    }
+    let own = model.own;
+    let more = [
+        OwnValues { surface: true, ..own },
+        OwnValues { zero: true, ..own },
+        OwnValues { scale: true, ..own },
+        OwnValues { surface: true, zero: true, ..own },
+        OwnValues { surface: true, scale: true, ..own },
+    ];
+    more.into_iter().filter(|more| *more != own).collect()
+}
+
+fn fewer_own_values(model: &ContactModel) -> Vec<OwnValues> {
+    let own = model.own;
+    let fewer = [
+        OwnValues { surface: false, ..own },
+        OwnValues { zero: false, ..own },
+        OwnValues { scale: false, ..own },
+    ];
+    fewer.into_iter().filter(|fewer| *fewer != own).collect()
+}
+
+/// Values of `fit` in the layout of `model`, which differs in what each trial has for itself.
+fn moved_values(fit: &Fit, model: &ContactModel) -> Vec<f64> {
+    let others = model.trials - 1;
+    let column = |nth: Option<usize>| -> Vec<f64> {
+        nth.map_or(vec![0.0; others], |nth| {
+            let start = index::SHARED + nth * others;
+            fit.values[start..start + others].to_vec()
+        })
+    };
+    let (own, old) = (model.own, fit.model.own);
+    let mut values = fit.values[..index::SHARED + others].to_vec();
+    if own.zero {
+        values.extend(column(old.zero.then_some(1)));
+    }
+    if own.scale {
+        values.extend(column(old.scale.then_some(1 + usize::from(old.zero))));
+    }
+    values.extend(&fit.values[fit.model.nominal_count()..]);
+    values
+}
+
+/// The first of each set of names.
+fn distinct(fits: Vec<Fit>) -> Vec<Fit> {
+    let mut kept: Vec<Fit> = Vec::new();
+    for fit in fits {
+        let own = sorted_names(&fit.model);
+        if kept.iter().all(|other| sorted_names(&other.model) != own || other.model.own != fit.model.own) {
+            kept.push(fit);
+        }
+    }
+    kept
+}
+
+/// Names of all effects, as often as each is there.
+fn sorted_names(model: &ContactModel) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = model.terms.iter().map(crate::diagnose::model::Term::name).collect();
+    names.sort_unstable();
+    names
+}

@@ -1,0 +1,70 @@
+//! Which frequencies of a form that repeats are worth a trial: those at which the residual itself is loudest (Lomb's periodogram).
+
+use rayon::prelude::*;
+
+use super::fit::{Data, Fit};
+use crate::effects::{Abscissa, FrequencySearch, Start, ToneWeight};
+
+/// Frequencies that are tried.
+const MOST_FREQUENCIES: usize = 4;
+
+/// The loudest of `search` in the weighted residual `rest` of `fit`.
+#[must_use]
+pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f64]) -> Vec<Start> {
+    let rows = Rows::of(search, data, fit, rest);
+    let mut heard: Vec<(f64, f64)> = Vec::new();
+    for &(first, apart, count) in &search.frequencies {
+        let frequencies: Vec<f64> = (0..count).map(|at| first + apart * at as f64).collect();
+        let power: Vec<f64> = frequencies.par_iter().map(|frequency| rows.power(*frequency)).collect();
+        let level = |at: Option<usize>| at.and_then(|at| power.get(at)).copied().unwrap_or(f64::NEG_INFINITY);
+        let peaks = (0..count).filter(|at| {
+            power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1))
+        });
+        heard.extend(peaks.map(|at| (power[at], frequencies[at])));
+    }
+    heard.sort_by(|a, b| b.0.total_cmp(&a.0));
+    heard.truncate(MOST_FREQUENCIES);
+    heard.iter().map(|(_, frequency)| search.start(*frequency)).collect()
+}
+
+/// Abscissa, weight and residual of each row that counts, a list a trial; along a way all trials share one phase.
+struct Rows(Vec<Vec<(f64, f64, f64)>>);
+
+impl Rows {
+    fn of(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f64]) -> Self {
+        let starts = data.starts();
+        let trial = |number: usize| {
+            let (trial, surface) = (&data.trials[number], fit.model.surface(&fit.values, number));
+            let row = |row: usize| {
+                let depth = trial.position[row] - surface;
+                let inside = fit.model.bilateral || depth > 0.0;
+                let weight = match search.weight {
+                    ToneWeight::Even => 1.0,
+                    ToneWeight::Inside => f64::from(inside),
+                    ToneWeight::Depth => f64::from(inside) * depth,
+                };
+                let along = if search.abscissa == Abscissa::Time { trial.time[row] } else { trial.position[row] };
+                (along, weight * data.weights[number][row], rest[starts[number] + row])
+            };
+            (0..trial.len()).map(row).filter(|(_, weight, _)| *weight != 0.0).collect::<Vec<_>>()
+        };
+        let each = (0..data.trials.len()).map(trial);
+        Self(if search.abscissa == Abscissa::Time { each.collect() } else { vec![each.flatten().collect()] })
+    }
+
+    /// What a wave of that frequency takes.
+    fn power(&self, frequency: f64) -> f64 {
+        let pulse = std::f64::consts::TAU * frequency;
+        let trial = |rows: &Vec<(f64, f64, f64)>| {
+            let (mut sine, mut cosine, mut weight) = (0.0, 0.0, 0.0);
+            for (along, own, rest) in rows {
+                let (s, c) = (pulse * along).sin_cos();
+                sine += own * s * rest;
+                cosine += own * c * rest;
+                weight += own * own;
+            }
+            2.0 * (sine * sine + cosine * cosine) / f64::max(weight, f64::MIN_POSITIVE)
+        };
+        self.0.iter().map(trial).sum()
+    }
+}

@@ -1,0 +1,119 @@
+//! A recording as the contact's model sees it: the smoothed motion of the tool and the force beside it.
+
+use super::motion;
+use crate::recording::Recording;
+use crate::sensors::Figures;
+
+/// One trial. All columns are of equal length.
+#[derive(Debug, Clone)]
+pub struct ContactTrial {
+    /// File name of the recording.
+    pub name: String,
+    /// Seconds since the first row of the recording.
+    pub time: Vec<f64>,
+    /// Usual time between rows, s.
+    pub step_s: f64,
+    /// Usual time between the rows of the recording, s.
+    pub source_step_s: f64,
+    /// m or rad.
+    pub position: Vec<f64>,
+    /// m/s or rad/s.
+    pub velocity: Vec<f64>,
+    /// m/s^2 or rad/s^2.
+    pub acceleration: Vec<f64>,
+    /// Variance of the position.
+    pub position_variance: Vec<f64>,
+    /// Variance of the velocity.
+    pub velocity_variance: Vec<f64>,
+    /// Force reading, N or N m.
+    pub force: Vec<f64>,
+    /// Variance of a row of it by the sensor alone.
+    pub force_variance: f64,
+    /// Whether a row is a measurement.
+    pub counts: Vec<bool>,
+    /// Seconds since the trial began at which single readings leap away and back: no measurements.
+    pub dropouts_s: Vec<f64>,
+    /// What the sensors leave.
+    pub figures: Figures,
+}
+
+impl ContactTrial {
+    /// The trial of `recording`, means of `every` rows each; `None` where it has no force.
+    #[must_use]
+    pub fn new(recording: &Recording, figures: Figures, every: usize) -> Option<Self> {
+        let (mut force, mut position) = (recording.force.clone()?, recording.position.clone());
+        let channel = figures.force?;
+        let mut counts = vec![true; force.len()];
+        mend(&recording.time, &mut position, &mut counts);
+        mend(&recording.time, &mut force, &mut counts);
+        let origin = recording.time.first().copied()?;
+        let since: Vec<f64> = recording.time.iter().map(|time| time - origin).collect();
+        let dropouts_s = counts.iter().zip(&since).filter(|(counts, _)| !**counts).map(|(_, time)| *time).collect();
+        let noise = figures.position.noise.max(figures.position.resolution / 12f64.sqrt());
+        let smooth = motion::smoothed(&since, &position, noise * noise);
+        let every = every.max(1);
+        let mean = |values: &[f64]| -> Vec<f64> {
+            values.chunks_exact(every).map(|rows| rows.iter().sum::<f64>() / every as f64).collect()
+        };
+        let source_step_s = recording.period();
+        let force_variance = channel.noise.max(f64::MIN_POSITIVE).powi(2) / every as f64;
+        // Rounding that noise does not shake is no less in a mean.
+        let rounding = channel.resolution / 12f64.sqrt();
+        let coarse = channel.noise < 0.5 * channel.resolution;
+        Some(Self {
+            name: recording.name.clone(),
+            time: mean(&since),
+            step_s: source_step_s * every as f64,
+            source_step_s,
+            position: mean(&smooth.position),
+            velocity: mean(&smooth.velocity),
+            acceleration: mean(&smooth.acceleration),
+            position_variance: mean(&smooth.position_variance),
+            velocity_variance: mean(&smooth.velocity_variance),
+            force: mean(&force),
+            force_variance: if coarse { force_variance.max(rounding * rounding) } else { force_variance },
+            counts: counts.chunks_exact(every).map(|rows| rows.iter().all(|counts| *counts)).collect(),
+            dropouts_s,
+            figures,
+        })
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Seconds from the first row to the last.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.time.last().unwrap_or(&0.0) - self.time.first().unwrap_or(&0.0)
+    }
+}
+
+/// Replaces single readings that leap away from both neighbours by more than the whole remaining range of the channel.
+fn mend(time: &[f64], values: &mut [f64], counts: &mut [bool]) {
+    if values.len() < 3 {
+        return;
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let (low, high) = (sorted[sorted.len() / 100], sorted[sorted.len() - 1 - sorted.len() / 100]);
+    let range = high - low;
+    for at in 1..values.len() - 1 {
+        let (before, after) = (values[at - 1], values[at + 1]);
+        let leap = (values[at] - before).abs().min((values[at] - after).abs());
+        let beyond = (values[at] - high).max(low - values[at]);
+        if range > 0.0 && leap > range && beyond > 0.5 * range {
+            let part = (time[at] - time[at - 1]) / (time[at + 1] - time[at - 1]);
+            values[at] = before + part * (after - before);
+            counts[at] = false;
+        }
+    }
+}
