@@ -1,28 +1,22 @@
 //! `palpate diagnose`: where simulation and recording differ, and why.
 //!
-//! The recordings are checked ([`check`]) and brought onto one clock, every channel through the same filter ([`signals`]).
-//! The rig's model ([`model`]) is fitted ([`estimation`]); simulated replicas of it show what the sensors alone would leave
-//! ([`bootstrap`]). Effects are added until nothing worth it is left, and a verdict is given ([`selection`]), with the
-//! experiment that would separate what is left undecided ([`experiment`]). [`report`] writes it down.
-//!
-//! Dependencies run one way, in this order: [`linalg`], [`signals`], [`model`], [`estimation`], [`bootstrap`], [`selection`],
-//! [`report`], [`command`]; the tuned numbers of all stand in [`thresholds`]. [`check`] depends on [`signals`] alone; [`experiment`] on all up to [`bootstrap`].
+//! The recordings are checked ([`check`]). The contact is identified by a model of its force along the recorded motion ([`contact`]), the
+//! drive by a model of its motion under the recorded effort ([`drive`]); each tells which effects are missing, what else would do, and
+//! what is left. [`report`] writes it down; [`experiment`] says what would tell alternatives apart.
 
-pub mod bootstrap;
 pub mod check;
 pub mod command;
 pub mod contact;
 pub mod drive;
-pub mod estimation;
 pub mod experiment;
 pub mod linalg;
-pub mod model;
+pub mod phase;
 pub mod report;
-pub mod selection;
 pub mod signals;
+pub mod term;
 pub mod thresholds;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, bail};
 
 pub use command::{DiagnoseArgs, run};
 pub use signals::prepare::sensed;
@@ -32,19 +26,12 @@ use crate::error::InputError;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
-use bootstrap::problem::IdentificationProblem;
-use bootstrap::sampler::BootstrapSampler;
 use drive::named::NamedEffect;
 use drive::outcome::Outcome;
-use report::build_report::{self, DiagnosisInputs};
 pub use report::diagnosis::Diagnosis;
 use report::diagnosis::PlotData;
 use report::merge::{self, Report};
-use report::{drive_report, refined_rig};
-use selection::{confidence_interval, forward_selection, verdict};
-use signals::bandwidth::analysis_filters;
-use signals::prepare::{common_period, decimate_to_need};
-use signals::uniform_trial::UniformTrial;
+use report::{contact_report, drive_report};
 
 /// What `diagnose` found.
 pub struct Found {
@@ -54,6 +41,8 @@ pub struct Found {
     pub pictures: PlotData,
     /// The improved rig.
     pub improved: Rig,
+    /// The rigs of laws of the contact that the recordings do not tell from the answer.
+    pub alternatives: Vec<Rig>,
 }
 
 /// Diagnoses `trials` against `rig`; `origin` names the rig file in errors, `say` is told how it goes.
@@ -73,13 +62,14 @@ pub fn diagnose(
 ) -> Result<Found> {
     say("reading the sensors");
     let uniform_trials = sensed(rig, origin, trials)?;
+    let figures: Vec<Figures> = uniform_trials.iter().map(|trial| trial.figures).collect();
     let findings = check::check(rig, trials, &uniform_trials);
     let known = effects::resolve_all(rig, origin)?;
-    let is_touching = rig.contact.is_some() && trials.iter().all(|trial| trial.force.is_some());
-    let by_force = |rig: &Rig| contact(rig, origin, trials, simulation, seed, say);
-    let mut contact = is_touching.then(|| by_force(&contact_rig(rig, &[]))).transpose()?;
+    let is_touching = contact::prepare::is_recorded(rig, trials);
+    let by_force = |rig: &Rig| touched(rig, origin, trials, &figures, say);
+    let mut contact = if is_touching { by_force(&contact_rig(rig, &[]))? } else { None };
     let drive = drive::prepare::is_recorded(rig, trials).then(|| {
-        let zeroed = contact.as_ref().map(|contact| zeroed(&contact.improved, trials));
+        let zeroed = contact.as_ref().map(|contact| zeroed(&contact_report::refined(rig, contact), trials));
         identified(rig, zeroed.as_deref().unwrap_or(trials), known, seed, say)
     });
     let mut drive = drive.flatten();
@@ -87,17 +77,20 @@ pub fn diagnose(
     let sensors: Vec<NamedEffect> =
         found.into_iter().filter(|found| CARRIED_BY_THE_DRIVE.contains(&found.name())).collect();
     if is_touching && !sensors.is_empty() {
-        contact = Some(by_force(&contact_rig(rig, &sensors))?);
+        contact = by_force(&contact_rig(rig, &sensors))?;
+    }
+    if let Some(contact) = &mut contact {
+        contact.compare_with(simulation);
     }
     if let (Some(contact), Some(drive)) = (&contact, &mut drive) {
-        drive.leave_to_the_contact(|name| told_by(&contact.answer, name));
+        drive.leave_to_the_contact(|name| is_told(contact, name));
     }
-    let Some((mut report, improved)) = together(rig, contact, drive.as_ref()) else {
+    let alternatives = contact.as_ref().map(|contact| contact_report::alternative_rigs(rig, contact));
+    let Some(((mut answer, pictures), improved)) = together(rig, contact.as_ref(), drive.as_ref()) else {
         bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
     };
-    report.0.findings.splice(0..0, findings);
-    let (answer, pictures) = report;
-    Ok(Found { answer, pictures, improved })
+    answer.findings.splice(0..0, findings);
+    Ok(Found { answer, pictures, improved, alternatives: alternatives.unwrap_or_default() })
 }
 
 /// What a diagnosis needs.
@@ -158,69 +151,42 @@ fn zeroed(improved: &Rig, trials: &[Recording]) -> Vec<Recording> {
     if zeros.is_empty() { trials.to_vec() } else { trials.iter().map(zeroed).collect() }
 }
 
-/// Whether `answer` names `name`, or what a slow sensor and a late one have in common.
-fn told_by(answer: &Diagnosis, name: &str) -> bool {
-    let names = |name: &str| answer.physics.iter().any(|physics| physics.name == name);
+/// Whether the contact names `name`, or what a slow sensor and a late one have in common.
+fn is_told(contact: &contact::outcome::Outcome, name: &str) -> bool {
+    let terms = &contact.chosen.model.terms;
+    let names = |name: &str| contact.named.iter().any(|named| terms[named.at].name() == name);
     names(name) || (name == "channel_delay" && names("force_lag"))
 }
 
 /// One report and one rig from those of the contact and of the drive.
-fn together(rig: &Rig, contact: Option<Found>, drive: Option<&Outcome>) -> Option<(Report, Rig)> {
-    let drive = drive.map(|outcome| (drive_report::drive_report(outcome, rig), outcome));
-    match (contact, drive) {
+fn together(rig: &Rig, contact: Option<&contact::outcome::Outcome>, drive: Option<&Outcome>) -> Option<(Report, Rig)> {
+    let of_contact =
+        contact.map(|outcome| (contact_report::contact_report(outcome, rig), contact_report::refined(rig, outcome)));
+    let of_drive = drive.map(|outcome| (drive_report::drive_report(outcome, rig), outcome));
+    match (of_contact, of_drive) {
         (None, None) => None,
-        (Some(contact), None) => {
-            let improved = Rig { drive: rig.drive, ..contact.improved };
-            Some(((contact.answer, contact.pictures), improved))
-        }
+        (Some((report, improved)), None) => Some((report, improved)),
         (None, Some((report, outcome))) => Some((report, drive_report::refined(rig, rig, outcome))),
-        (Some(contact), Some((report, outcome))) => {
-            let improved = drive_report::refined(rig, &contact.improved, outcome);
-            let both = merge::merged((contact.answer, contact.pictures), report, rig.coordinate);
-            Some((both, improved))
+        (Some((contact, improved)), Some((drive, outcome))) => {
+            let improved = drive_report::refined(rig, &improved, outcome);
+            Some((merge::merged(contact, drive, rig.coordinate), improved))
         }
     }
 }
 
-/// Diagnoses the contact of `trials` by their force alone.
-fn contact(
-    rig: &Rig,
-    origin: &str,
-    trials: &[Recording],
-    simulation: &[Recording],
-    seed: u64,
-    say: &dyn Fn(&str),
-) -> Result<Found> {
-    let without_effort = |trials: &[Recording]| -> Vec<Recording> {
-        trials.iter().map(|trial| Recording { effort: None, ..trial.clone() }).collect()
-    };
-    let (trials, simulation) = (&without_effort(trials), &without_effort(simulation));
-    let problem = problem(rig, origin, sensed(rig, origin, trials)?, seed)?;
-    let mut search = forward_selection::search(&problem, say);
-    let assessment = verdict::assess(&problem, &mut search, say).context("nothing was searched")?;
-    say("the report");
-    let handed = (!simulation.is_empty()).then(|| {
-        let period = common_period(trials);
-        let parts = (problem.sampler.contact_filter.period / period).round() as usize;
-        let simulated = |run: &Recording| UniformTrial::of(run, Figures::of(rig, run), period).thinned(parts);
-        let simulated: Vec<UniformTrial> = simulation.iter().map(simulated).collect();
-        build_report::residuals_of_simulation(&problem, &simulated)
-    });
-    let fitted_model = &search.rounds.last().context("nothing was searched")?.fitted_model;
-    let estimates = confidence_interval::estimates(&problem, fitted_model, &assessment);
-    let improved = refined_rig::refined_rig(rig, &problem, fitted_model, &assessment, &estimates);
-    let (problem, search, assessment, estimates) = (&problem, &search, &assessment, &estimates);
-    let parts = DiagnosisInputs { rig, problem, search, assessment, estimates, handed };
-    let (answer, pictures) = build_report::build_report(parts).context("no channel was left to look at")?;
-    Ok(Found { answer, pictures, improved })
-}
-
-/// The trials `uniform_trials` as they are looked at, and the nominal model that they are held against.
+/// What the recordings say of the contact, by their force and position alone.
 ///
 /// # Errors
 /// Effects in the rig file that cannot be.
-pub fn problem(rig: &Rig, origin: &str, uniform_trials: Vec<UniformTrial>, seed: u64) -> Result<IdentificationProblem> {
-    let uniform_trials = decimate_to_need(rig, uniform_trials);
-    let (contact, drive) = analysis_filters(rig, &uniform_trials);
-    Ok(IdentificationProblem::new(rig, origin, BootstrapSampler::new(uniform_trials, contact, drive, seed))?)
+fn touched(
+    rig: &Rig,
+    origin: &str,
+    trials: &[Recording],
+    figures: &[Figures],
+    say: &dyn Fn(&str),
+) -> Result<Option<contact::outcome::Outcome>> {
+    let known = effects::resolve_all(rig, origin)?;
+    let Some(nominal) = contact::prepare::nominal(rig, known) else { return Ok(None) };
+    let [fine, coarse] = contact::prepare::trials(trials, figures);
+    Ok(contact::outcome::identify(fine, &coarse, &nominal, say))
 }

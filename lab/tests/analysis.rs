@@ -1,12 +1,8 @@
-//! The parts of the diagnosis, each against a truth from elsewhere: closed forms, other algorithms, chance itself.
+//! The parts of the diagnosis, each against a truth from elsewhere: closed forms, other algorithms.
 
-use palpate_lab::diagnose::bootstrap::null_distribution::NullDistribution;
 use palpate_lab::diagnose::signals::dequantize::dequantize;
 use palpate_lab::diagnose::signals::derivative_filter::DerivativeFilter;
 use palpate_lab::effects::{Reading, gate, ramp};
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution as _, StandardNormal};
 
 /// Largest distance of two rows, `edge` rows at either end left out; NaN fails any bound.
 fn apart(a: &[f64], b: &[f64], edge: usize) -> f64 {
@@ -173,27 +169,4 @@ fn a_delay_shifts_a_wave_and_a_lag_filters_it() {
         // Straight lines between rows lose (pulse step)^2 / 12 of the wave.
         assert!(apart(&force, &slow, 60) < 0.013, "{lag}");
     }
-}
-
-#[test]
-fn a_probability_of_chance_is_what_chance_does() {
-    let mut chance = ChaCha8Rng::seed_from_u64(3);
-    // The greatest of twelve squares of white values, as the best of twelve effects would be.
-    let mut greatest = || {
-        let square = |_| {
-            let n: f64 = StandardNormal.sample(&mut chance);
-            n * n
-        };
-        (0..12).map(square).fold(0.0, f64::max)
-    };
-    let mut alarms = 0;
-    for _ in 0..200 {
-        let twins: Vec<f64> = (0..40).map(|_| greatest()).collect();
-        let null = NullDistribution::of(&twins, 2.0);
-        alarms += (0..50).filter(|_| null.p_value(greatest()) < 0.01).count();
-    }
-    // One per cent of 10 000 is 100. The law leans to the safe side, for the greatest of a dozen squares falls faster than
-    // its tail; it must not lean to the other, nor so far that nothing is ever found.
-    assert!((20..=120).contains(&alarms), "{alarms}");
-    assert!(NullDistribution::of(&[1.0, 1.0, 1.0], 2.0).p_value(f64::NAN).is_nan());
 }

@@ -7,6 +7,7 @@ pub mod interval;
 pub mod model;
 pub mod motion;
 pub mod outcome;
+pub mod prepare;
 pub mod projection;
 pub mod scales;
 pub mod selection;

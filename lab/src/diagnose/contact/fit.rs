@@ -146,7 +146,8 @@ impl<'a> Data<'a> {
         for _ in 0..effort.0 {
             let ranges = model.ranges(&values);
             let free: Vec<usize> = (0..values.len()).filter(|at| ranges[*at].free && !held(*at)).collect();
-            let normal = Normal::of(self.columns(model, &values, &ranges, &free, &base), &base, &ranges, &free, &values);
+            let normal =
+                Normal::of(self.columns(model, &values, &ranges, &free, &base), &base, &ranges, &free, &values);
             let mut gained = 0.0;
             for _ in 0..DAMPING_TRIES {
                 let moved = normal.step(&values, &ranges, &free, damping);

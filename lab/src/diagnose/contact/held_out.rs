@@ -81,6 +81,8 @@ impl Folds {
 #[must_use]
 pub fn rms(data: &Data<'_>, columns: &[Vec<f64>]) -> f64 {
     let rows = columns.iter().zip(&data.weights).flat_map(|(column, weights)| column.iter().zip(weights));
-    let (sum, count) = rows.filter(|(_, weight)| **weight > 0.0).fold((0.0, 0usize), |(sum, count), (value, _)| (sum + value * value, count + 1));
+    let (sum, count) = rows
+        .filter(|(_, weight)| **weight > 0.0)
+        .fold((0.0, 0usize), |(sum, count), (value, _)| (sum + value * value, count + 1));
     (sum / count.max(1) as f64).sqrt()
 }

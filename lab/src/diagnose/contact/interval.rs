@@ -22,7 +22,8 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest, halves: &[Vec<f64>; 2]
     let ranges = fit.model.ranges(&fit.values);
     let free: Vec<usize> = (0..fit.values.len()).filter(|at| ranges[*at].free).collect();
     let columns = data.columns(&fit.model, &fit.values, &ranges, &free, &rest.rows);
-    let priors: Vec<f64> = free.iter().map(|at| ranges[*at].prior.map_or(0.0, |(_, sigma)| (ranges[*at].size / sigma).powi(2))).collect();
+    let priors: Vec<f64> =
+        free.iter().map(|at| ranges[*at].prior.map_or(0.0, |(_, sigma)| (ranges[*at].size / sigma).powi(2))).collect();
     let block = (data.rows() / BLOCKS).max((BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
     let found = deviations(&rest.rows, &columns, &priors, rest.power, block);
     let mut all: Vec<[f64; 2]> = fit.values.iter().map(|value| [*value; 2]).collect();
@@ -47,7 +48,11 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest, halves: &[Vec<f64>; 2]
 fn deviations(residual: &[f64], columns: &[Vec<f64>], priors: &[f64], power: f64, block: usize) -> Vec<f64> {
     let count = columns.len();
     // Values of unlike size: each direction is taken as long as one.
-    let sizes: Vec<f64> = columns.iter().zip(priors).map(|(column, prior)| (dot(column, column) + prior).sqrt().max(f64::MIN_POSITIVE)).collect();
+    let sizes: Vec<f64> = columns
+        .iter()
+        .zip(priors)
+        .map(|(column, prior)| (dot(column, column) + prior).sqrt().max(f64::MIN_POSITIVE))
+        .collect();
     let mut curvature = DMatrix::from_fn(count, count, |i, j| dot(&columns[i], &columns[j]) / (sizes[i] * sizes[j]));
     for at in 0..count {
         curvature[(at, at)] += 1e-9 + priors[at] / (sizes[at] * sizes[at]);
@@ -57,7 +62,8 @@ fn deviations(residual: &[f64], columns: &[Vec<f64>], priors: &[f64], power: f64
     let mut scatter = DMatrix::zeros(count, count);
     for start in (0..residual.len()).step_by(block) {
         let rows = start..(start + block).min(residual.len());
-        let score = DVector::from_fn(count, |at, _| dot(&columns[at][rows.clone()], &residual[rows.clone()]) / sizes[at]);
+        let score =
+            DVector::from_fn(count, |at, _| dot(&columns[at][rows.clone()], &residual[rows.clone()]) / sizes[at]);
         scatter += &score * score.transpose();
     }
     let sandwich = &plain * scatter * &plain;

@@ -2,7 +2,7 @@
 
 use super::scales::Scales;
 use super::trial::ContactTrial;
-use crate::diagnose::model::Term;
+use crate::diagnose::term::Term;
 use crate::effects::contact_simulator::{ActiveEffect, ContactSimulator};
 use crate::effects::{Limit, Parameter, Place, Reading};
 use crate::rig::Contact;

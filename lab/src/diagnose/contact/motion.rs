@@ -178,11 +178,8 @@ fn predict(state: &mut Vector, covariance: &mut Matrix, step: f64, density: f64)
     *state = product(&forward, state);
     let half = times(&forward, covariance);
     let (s2, s3) = (step * step, step * step * step);
-    let noise = [
-        [s2 * s3 / 20.0, s2 * s2 / 8.0, s3 / 6.0],
-        [s2 * s2 / 8.0, s3 / 3.0, s2 / 2.0],
-        [s3 / 6.0, s2 / 2.0, step],
-    ];
+    let noise =
+        [[s2 * s3 / 20.0, s2 * s2 / 8.0, s3 / 6.0], [s2 * s2 / 8.0, s3 / 3.0, s2 / 2.0], [s3 / 6.0, s2 / 2.0, step]];
     for row in 0..3 {
         for column in 0..3 {
             let carried: f64 = (0..3).map(|inner| half[row][inner] * forward[column][inner]).sum();
@@ -203,13 +200,7 @@ fn correct(state: &mut Vector, covariance: &mut Matrix, innovation: f64, varianc
 }
 
 /// The adjoint state before a row from that behind it: (I - K H)^T and what the row itself says.
-fn through_row(
-    adjoint: &mut Vector,
-    information: &mut Matrix,
-    covariance: &Matrix,
-    innovation: f64,
-    variance: f64,
-) {
+fn through_row(adjoint: &mut Vector, information: &mut Matrix, covariance: &Matrix, innovation: f64, variance: f64) {
     let gain: Vector = std::array::from_fn(|row| covariance[row][0] / variance);
     let kept: Matrix = std::array::from_fn(|row| {
         std::array::from_fn(|column| f64::from(row == column) - if column == 0 { gain[row] } else { 0.0 })
@@ -234,7 +225,9 @@ fn product(matrix: &Matrix, vector: &Vector) -> Vector {
 }
 
 fn times(left: &Matrix, right: &Matrix) -> Matrix {
-    std::array::from_fn(|row| std::array::from_fn(|column| (0..3).map(|inner| left[row][inner] * right[inner][column]).sum()))
+    std::array::from_fn(|row| {
+        std::array::from_fn(|column| (0..3).map(|inner| left[row][inner] * right[inner][column]).sum())
+    })
 }
 
 #[cfg(test)]
@@ -249,7 +242,8 @@ mod tests {
         let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(3);
         let normal = Normal::new(0.0, 2e-5).unwrap();
         let jitter = Normal::new(0.0, 1e-4).unwrap();
-        let time: Vec<f64> = (0..4000).map(|row| f64::from(row) * 1e-3 + jitter.sample(&mut random).clamp(-3e-4, 3e-4)).collect();
+        let mut late = || -> f64 { jitter.sample(&mut random) };
+        let time: Vec<f64> = (0..4000).map(|row| f64::from(row) * 1e-3 + late().clamp(-3e-4, 3e-4)).collect();
         let (size, pulse) = (5e-3, 12.0f64);
         let position: Vec<f64> =
             time.iter().map(|time| 0.3 + size * (pulse * time).sin() + normal.sample(&mut random)).collect();

@@ -13,8 +13,9 @@ use super::model::{ContactModel, OwnValues, index};
 use super::scales::Scales;
 use super::selection::{Chosen, Search};
 use super::trial::ContactTrial;
-use crate::diagnose::model::Term;
+use crate::diagnose::term::Term;
 use crate::effects::{Place, Resolved};
+use crate::recording::Recording;
 use crate::rig::Contact;
 
 /// What a rig file says of a contact.
@@ -94,6 +95,27 @@ pub struct Outcome {
     pub expected_noise: f64,
 }
 
+impl Outcome {
+    /// Takes the user's own simulations, one a trial in their order, for what the rig file as given predicts.
+    pub fn compare_with(&mut self, simulations: &[Recording]) {
+        for ((trial, run), residual) in self.trials.iter().zip(simulations).zip(&mut self.residuals[0]) {
+            let Some(force) = &run.force else { continue };
+            let origin = run.time.first().copied().unwrap_or(0.0);
+            let mut next = 1;
+            for (row, rest) in residual.iter_mut().enumerate() {
+                let now = origin + trial.time[row];
+                while next + 1 < run.time.len() && run.time[next] < now {
+                    next += 1;
+                }
+                if let (Some(after), Some(before)) = (run.time.get(next), run.time.get(next - 1)) {
+                    let part = ((now - before) / (after - before)).clamp(0.0, 1.0);
+                    *rest = trial.force[row] - (force[next - 1] + part * (force[next] - force[next - 1]));
+                }
+            }
+        }
+    }
+}
+
 /// Fewest rows that a contact is identified from.
 const FEWEST_ROWS: usize = 16;
 
@@ -128,20 +150,12 @@ pub fn identify(
     if rows < FEWEST_ROWS || trials.iter().any(|trial| trial.len() < 4) {
         return None;
     }
-    let model = nominal_model(&trials, rig);
-    let start = given_values(&model, rig);
-    let flat = |trials: &[ContactTrial]| -> Vec<Vec<f64>> {
-        let worth = |trial: &ContactTrial| {
-            let weight = trial.force_variance.sqrt().recip();
-            trial.counts.iter().map(|counts| if *counts { weight } else { 0.0 }).collect()
-        };
-        trials.iter().map(worth).collect()
-    };
+    let (_, start) = law_of(&trials, rig);
     say("the contact: nominal values");
-    let first = nominal_fit(&Data { trials: &trials, weights: flat(&trials) }, &model, &start);
-    let data = Data { trials: &trials, weights: flat(&trials) }.weighed(&first);
-    let nominal = data.fit(&model, &first.values, Effort::FULL);
-    let coarse = Data { trials: coarse, weights: flat(coarse) }.weighed(&nominal);
+    let first = nominal_fit(&Data { trials: &trials, weights: flat_weights(&trials) }, rig);
+    let data = Data { trials: &trials, weights: flat_weights(&trials) }.weighed(&first);
+    let nominal = data.fit(&first.model, &first.values, Effort::FULL);
+    let coarse = Data { trials: coarse, weights: flat_weights(coarse) }.weighed(&nominal);
     let mut search = Search { data, coarse, nominal };
     let chosen = search.run(say);
     say("the contact: what is left");
@@ -151,39 +165,51 @@ pub fn identify(
     Some(outcome)
 }
 
-fn nominal_model(trials: &[ContactTrial], rig: &NominalContact) -> ContactModel {
+/// One over the deviation of the force sensor alone, for every row that counts.
+#[must_use]
+pub fn flat_weights(trials: &[ContactTrial]) -> Vec<Vec<f64>> {
+    let worth = |trial: &ContactTrial| {
+        let weight = trial.force_variance.sqrt().recip();
+        trial.counts.iter().map(|counts| if *counts { weight } else { 0.0 }).collect()
+    };
+    trials.iter().map(worth).collect()
+}
+
+/// The law that `rig` states, with the values that it gives.
+#[must_use]
+pub fn law_of(trials: &[ContactTrial], rig: &NominalContact) -> (ContactModel, Vec<f64>) {
     let contact = rig.contact;
-    let terms = rig.effects.iter().filter(|effect| effect.effect.spec().place != Place::Drive);
-    ContactModel {
+    let held = || rig.effects.iter().filter(|effect| effect.effect.spec().place != Place::Drive);
+    let model = ContactModel {
         bilateral: contact.bilateral,
         force_zero: rig.force_zero,
         trials: trials.len(),
         own: OwnValues::NONE,
-        terms: terms.map(|effect| Term { effect: effect.effect, form: effect.form }).collect(),
+        terms: held().map(|effect| Term { effect: effect.effect, form: effect.form }).collect(),
         scales: Scales::of(trials, contact.surface, contact.bilateral, contact.stiffness, rig.is_rotary),
-    }
-}
-
-fn given_values(model: &ContactModel, rig: &NominalContact) -> Vec<f64> {
+    };
     let mut values = vec![0.0; model.nominal_count()];
-    values[index::STIFFNESS] = rig.contact.stiffness;
-    values[index::DAMPING] = rig.contact.damping;
-    values[index::SURFACE] = rig.contact.surface;
-    for effect in rig.effects.iter().filter(|effect| effect.effect.spec().place != Place::Drive) {
-        let term = Term { effect: effect.effect, form: effect.form };
+    values[index::STIFFNESS] = contact.stiffness;
+    values[index::DAMPING] = contact.damping;
+    values[index::SURFACE] = contact.surface;
+    for (effect, term) in held().zip(&model.terms) {
         values.extend(term.spread(&effect.values, model.trials));
     }
-    values
+    (model, values)
 }
 
 /// Surfaces that the nominal fit starts from, of the travel above its least position: a rig file can be far off.
 const SURFACE_STARTS: [f64; 4] = [0.1, 0.35, 0.6, 0.85];
 
-fn nominal_fit(data: &Data<'_>, model: &ContactModel, start: &[f64]) -> Fit {
-    let mut best = data.fit(model, start, Effort::FULL);
+/// The law that `rig` states, its values refitted.
+#[must_use]
+pub fn nominal_fit(data: &Data<'_>, rig: &NominalContact) -> Fit {
+    let (model, start) = law_of(data.trials, rig);
+    let model = &model;
+    let mut best = data.fit(model, &start, Effort::FULL);
     if !model.bilateral {
         for part in SURFACE_STARTS {
-            let mut moved = start.to_vec();
+            let mut moved = start.clone();
             moved[index::SURFACE] = model.scales.positions[0] + part * model.scales.travel();
             let fit = data.fit(model, &moved, Effort::QUICK);
             if fit.energy < 0.9 * best.energy {
@@ -310,7 +336,13 @@ fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
 const MOST_ALTERNATIVES: usize = 3;
 
 /// Sets that were fitted in full and are neither refused by the likelihood nor told like the answer.
-fn alternatives(search: &Search<'_>, folds: &Folds, fit: &Fit, chosen: &Chosen, refitted: &HeldOut) -> Vec<Alternative> {
+fn alternatives(
+    search: &Search<'_>,
+    folds: &Folds,
+    fit: &Fit,
+    chosen: &Chosen,
+    refitted: &HeldOut,
+) -> Vec<Alternative> {
     let first = search.nominal.model.terms.len();
     if fit.model.terms.len() == first {
         return Vec::new();

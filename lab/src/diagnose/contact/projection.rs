@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::fit::{Data, Fit};
 use super::tones;
 use crate::diagnose::linalg::{dot, remove, solve};
-use crate::diagnose::model::Term;
+use crate::diagnose::term::Term;
 use crate::effects::{self, ExcitationStats, Place, Start};
 
 /// A start of an effect, with what it promises.
@@ -137,7 +137,10 @@ impl<'a> Projection<'a> {
             let gain: f64 = directions.iter().zip(parts.iter()).map(|((_, d), part)| part * dot(d, &self.free)).sum();
             let mut values = start_values.clone();
             sizes.iter().for_each(|&size| values[size] = 0.0);
-            directions.iter().zip(parts.iter()).for_each(|((size, _), part)| values[*size] = part * start_values[*size]);
+            directions
+                .iter()
+                .zip(parts.iter())
+                .for_each(|((size, _), part)| values[*size] = part * start_values[*size]);
             return gain.is_finite().then_some(Promise { term, gain, values });
         }
     }

@@ -51,7 +51,8 @@ impl Scales {
         let positions = range(&|trial| &trial.position);
         let forces = range(&|trial| &trial.force);
         let travel = positions[1] - positions[0];
-        let depth = if bilateral { (positions[1] - surface).max(surface - positions[0]) } else { positions[1] - surface };
+        let depth =
+            if bilateral { (positions[1] - surface).max(surface - positions[0]) } else { positions[1] - surface };
         let touching = |trial: &ContactTrial, row: usize| bilateral || trial.position[row] > surface;
         let (mut sum, mut count) = (0.0, 0usize);
         for trial in trials {
@@ -78,7 +79,13 @@ impl Scales {
 
     /// The same as effects ask for it, of `trials` under a stiffness and a surface.
     #[must_use]
-    pub fn excitation(&self, trials: &[ContactTrial], stiffness: f64, surface: f64, bilateral: bool) -> ExcitationStats {
+    pub fn excitation(
+        &self,
+        trials: &[ContactTrial],
+        stiffness: f64,
+        surface: f64,
+        bilateral: bool,
+    ) -> ExcitationStats {
         let passes = |trial: &ContactTrial| Passes::of(trial, surface, bilateral, 0.2 * self.depth);
         let all: Vec<Passes> = trials.iter().map(passes).collect();
         let squares = trials.iter().flat_map(|trial| &trial.acceleration).map(|value| value * value).sum::<f64>();

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::criteria::{
-    LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_VUONG,
+    FAR_FROM_NOISE, FAR_SHARES, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_VUONG,
 };
 use super::fit::{Data, Effort, Fit, Rest};
 use super::model::{ContactModel, OwnValues, index};
@@ -43,6 +43,10 @@ pub struct Worth {
     pub part_of_force: f64,
     /// Vuong's statistic over blocks.
     pub vuong: f64,
+    /// Power that the larger leaves over the sensors' own.
+    pub left: f64,
+    /// What a value more has to gain, nats.
+    pub price: f64,
 }
 
 /// Sets that each round grows from.
@@ -88,6 +92,8 @@ impl Search<'_> {
             part_of_all: (taken.max(0.0) / above(self.nominal.energy).max(taken.max(f64::MIN_POSITIVE))).sqrt(),
             part_of_force: self.part_of_force(taken),
             vuong: vuong(&logs(&rest.rows), &logs(&before.rows), block),
+            left: rest.power,
+            price: self.price_of_value(&rest),
         }
     }
 
@@ -99,7 +105,9 @@ impl Search<'_> {
 
     /// Squares of the force about its mean, each over its deviation.
     fn force_energy(&self) -> f64 {
-        let rows = || self.data.trials.iter().zip(&self.data.weights).flat_map(|(trial, weights)| trial.force.iter().zip(weights));
+        let rows = || {
+            self.data.trials.iter().zip(&self.data.weights).flat_map(|(trial, weights)| trial.force.iter().zip(weights))
+        };
         let weight: f64 = rows().map(|(_, weight)| weight * weight).sum();
         let mean = rows().map(|(force, weight)| force * weight * weight).sum::<f64>() / weight.max(f64::MIN_POSITIVE);
         rows().map(|(force, weight)| ((force - mean) * weight).powi(2)).sum::<f64>().max(f64::MIN_POSITIVE)
@@ -110,16 +118,23 @@ impl Search<'_> {
     pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
         let values = free(more).saturating_sub(free(less)).max(1);
         let worth = self.worth(more, less);
-        worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
-            && worth.share > LEAST_SHARE
-            && worth.part_of_all > LEAST_PART_OF_ALL
+        // Far from the sensors' noise any bend of a law takes a little of what another one leaves.
+        let [share, part] = if worth.left > FAR_FROM_NOISE { FAR_SHARES } else { [LEAST_SHARE, LEAST_PART_OF_ALL] };
+        worth.gain > LEAST_GAIN + worth.price * values as f64
+            && worth.share > share
+            && worth.part_of_all > part
             && worth.part_of_force > LEAST_PART_OF_FORCE
             && worth.vuong > LEAST_VUONG
     }
 
-    /// Squares that are left, with what each value has to earn.
-    fn price(&self, fit: &Fit, scale: f64) -> f64 {
-        scale * fit.energy + LEAST_GAIN_PER_VALUE * free(fit) as f64
+    /// What a value more has to gain, nats: half the logarithm of the rows that tell more than one (G. Schwarz, Ann. Stat. 6 (1978) 461).
+    fn price_of_value(&self, rest: &Rest) -> f64 {
+        0.5 * (self.data.rows() as f64 / rest.correlated_rows).max(1.0).ln()
+    }
+
+    /// Squares that are left, in nats under `rest`, with what each value has to earn.
+    fn price(&self, fit: &Fit, rest: &Rest) -> f64 {
+        0.5 / (rest.power * rest.correlated_rows) * fit.energy + self.price_of_value(rest) * free(fit) as f64
     }
 
     /// Runs the search, telling `say` how it goes.
@@ -143,8 +158,7 @@ impl Search<'_> {
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             let Some(least) = grown.first() else { break };
             let rest = Rest::of(&self.data, least);
-            let scale = 0.5 / (rest.power * rest.correlated_rows);
-            grown.sort_by(|a, b| self.price(a, scale).total_cmp(&self.price(b, scale)));
+            grown.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
             let grown = distinct(grown);
             sets.extend(grown.iter().cloned());
             let top = grown.iter().find(|fit| self.is_worth(fit, &best));
@@ -176,8 +190,7 @@ impl Search<'_> {
         let data = &self.coarse;
         let model = &base.model;
         let stiffness = base.values[index::STIFFNESS];
-        let excitation =
-            model.scales.excitation(data.trials, stiffness, base.values[index::SURFACE], model.bilateral);
+        let excitation = model.scales.excitation(data.trials, stiffness, base.values[index::SURFACE], model.bilateral);
         let promises = Projection::of(data, base).promises(&excitation);
         let mut tried: Vec<Fit> =
             promises.par_iter().take(TRIED).map(|promise| self.with_effect(base, promise)).collect();
@@ -246,15 +259,17 @@ impl Search<'_> {
         let first = self.nominal.model.terms.len();
         for _ in 0..2 {
             let rest = Rest::of(&self.data, &best);
-            let scale = 0.5 / (rest.power * rest.correlated_rows);
-            let own = self.price(&best, scale);
+            let own = self.price(&best, &rest);
             let mut better: Option<Fit> = None;
             for at in first..best.model.terms.len() {
                 let less = self.without(&best, at);
                 for fit in self.polished(self.grown(&less)) {
                     let is_open = !fit.model.is_at_end(&fit.values) && fit.model.terms.len() <= best.model.terms.len();
-                    let price = self.price(&fit, scale);
-                    if is_open && price < own - LEAST_GAIN && better.as_ref().is_none_or(|b| price < self.price(b, scale)) {
+                    let price = self.price(&fit, &rest);
+                    if is_open
+                        && price < own - LEAST_GAIN
+                        && better.as_ref().is_none_or(|b| price < self.price(b, &rest))
+                    {
                         better = Some(fit);
                     }
                 }
@@ -310,11 +325,8 @@ fn own_values(model: &ContactModel) -> Vec<OwnValues> {
 
 fn fewer_own_values(model: &ContactModel) -> Vec<OwnValues> {
     let own = model.own;
-    let fewer = [
-        OwnValues { surface: false, ..own },
-        OwnValues { zero: false, ..own },
-        OwnValues { scale: false, ..own },
-    ];
+    let fewer =
+        [OwnValues { surface: false, ..own }, OwnValues { zero: false, ..own }, OwnValues { scale: false, ..own }];
     fewer.into_iter().filter(|fewer| *fewer != own).collect()
 }
 
@@ -353,7 +365,7 @@ fn distinct(fits: Vec<Fit>) -> Vec<Fit> {
 
 /// Names of all effects, as often as each is there.
 fn sorted_names(model: &ContactModel) -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = model.terms.iter().map(crate::diagnose::model::Term::name).collect();
+    let mut names: Vec<&'static str> = model.terms.iter().map(crate::diagnose::term::Term::name).collect();
     names.sort_unstable();
     names
 }

@@ -8,19 +8,23 @@ use crate::effects::{Abscissa, FrequencySearch, Start, ToneWeight};
 /// Frequencies that are tried.
 const MOST_FREQUENCIES: usize = 4;
 
+/// Share of the motion's variance that it may have at the frequency of a wave: a chirp has less at any, strokes have half.
+const LARGEST_OWN_SHARE: f64 = 0.01;
+
 /// The loudest of `search` in the weighted residual `rest` of `fit`.
 #[must_use]
 pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f64]) -> Vec<Start> {
     let rows = Rows::of(search, data, fit, rest);
+    let own = Rows::of_motion(search, data);
     let mut heard: Vec<(f64, f64)> = Vec::new();
     for &(first, apart, count) in &search.frequencies {
         let frequencies: Vec<f64> = (0..count).map(|at| first + apart * at as f64).collect();
         let power: Vec<f64> = frequencies.par_iter().map(|frequency| rows.power(*frequency)).collect();
         let level = |at: Option<usize>| at.and_then(|at| power.get(at)).copied().unwrap_or(f64::NEG_INFINITY);
-        let peaks = (0..count).filter(|at| {
-            power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1))
-        });
-        heard.extend(peaks.map(|at| (power[at], frequencies[at])));
+        let peaks = (0..count).filter(|at| power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1)));
+        // A wave in step with the motion itself is not told from a law of the motion.
+        let is_motion = |at: &usize| own.power(frequencies[*at]) > LARGEST_OWN_SHARE * own.energy();
+        heard.extend(peaks.filter(|at| !is_motion(at)).map(|at| (power[at], frequencies[at])));
     }
     heard.sort_by(|a, b| b.0.total_cmp(&a.0));
     heard.truncate(MOST_FREQUENCIES);
@@ -50,6 +54,23 @@ impl Rows {
         };
         let each = (0..data.trials.len()).map(trial);
         Self(if search.abscissa == Abscissa::Time { each.collect() } else { vec![each.flatten().collect()] })
+    }
+
+    /// The positions themselves, about their mean; none along the way.
+    fn of_motion(search: &FrequencySearch, data: &Data<'_>) -> Self {
+        if search.abscissa != Abscissa::Time {
+            return Self(Vec::new());
+        }
+        let trial = |trial: &super::trial::ContactTrial| {
+            let mean = trial.position.iter().sum::<f64>() / trial.len().max(1) as f64;
+            trial.time.iter().zip(&trial.position).map(|(time, position)| (*time, 1.0, position - mean)).collect()
+        };
+        Self(data.trials.iter().map(trial).collect())
+    }
+
+    /// Sum of squares.
+    fn energy(&self) -> f64 {
+        self.0.iter().flatten().map(|(_, _, rest)| rest * rest).sum()
     }
 
     /// What a wave of that frequency takes.

@@ -9,6 +9,8 @@ use crate::sensors::Figures;
 pub struct ContactTrial {
     /// File name of the recording.
     pub name: String,
+    /// Time of the first row of the recording, s.
+    pub origin_s: f64,
     /// Seconds since the first row of the recording.
     pub time: Vec<f64>,
     /// Usual time between rows, s.
@@ -62,6 +64,7 @@ impl ContactTrial {
         let coarse = channel.noise < 0.5 * channel.resolution;
         Some(Self {
             name: recording.name.clone(),
+            origin_s: origin,
             time: mean(&since),
             step_s: source_step_s * every as f64,
             source_step_s,

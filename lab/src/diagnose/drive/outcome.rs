@@ -152,6 +152,38 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
     Some(outcome)
 }
 
+/// Inertia and viscous friction that `trials` teach; `None` where they show no motion.
+#[must_use]
+pub fn refitted(trials: &[DriveTrial], rig: &NominalDrive) -> Option<[f64; 2]> {
+    let scales = scales(trials, rig)?;
+    let variance = encoder_variance(trials, &scales);
+    let data = Data { trials, least_encoder_variance: 0.3 * variance };
+    let fit = nominal_fit(&data, rig, scales, variance)?;
+    Some([fit.values[index::INERTIA], fit.values[index::VISCOUS]])
+}
+
+/// Missing force of `trials` under the values of `rig`, a column a trial, seen up to [`LOWEST_BAND_HZ`]; the effort's delay alone is fitted.
+/// `None` where they show no motion.
+#[must_use]
+pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Vec<f64>>> {
+    let scales = scales(trials, rig)?;
+    let variance = encoder_variance(trials, &scales);
+    let data = Data { trials, least_encoder_variance: 0.3 * variance };
+    let encoder = rig.encoder.unwrap_or(Side::Load);
+    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
+        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
+    let model = Model { terms, scales };
+    let band = LOWEST_BAND_HZ.min(0.1 / scales.period_s);
+    let noise =
+        Noise { ln_disturbance: 0.0, ln_encoder: variance.ln() }.with_crossing(band, scales.period_s, rig.inertia);
+    let under = |rows: f64| {
+        let values = [vec![rig.inertia, rig.viscous, rows * scales.period_s], values.concat()].concat();
+        let fit = Fit { model: model.clone(), values, noise, log_likelihood: 0.0, ended: super::fit::Ended::Converged };
+        missing_force(&data, &fit, &noise)
+    };
+    DELAY_STARTS.iter().map(|rows| under(*rows)).min_by(|a, b| rms(a).total_cmp(&rms(b)))
+}
+
 /// Band in which a missing force is looked for even where the nominal law leaves nothing, Hz.
 const LOWEST_BAND_HZ: f64 = 5.0;
 

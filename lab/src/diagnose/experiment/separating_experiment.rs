@@ -1,32 +1,26 @@
 //! What tells one effect from another.
 
-use crate::diagnose::model::Term;
+use crate::diagnose::term::Term;
 use crate::effects::Place;
 
 /// Two effects and the motion, or the sensor, that separates them.
 struct SeparatingExperiment {
     names: [&'static str; 2],
     by: &'static str,
-    /// Whether force and position are the same under both, whatever the motion.
-    same: bool,
 }
 
 const fn pair(one: &'static str, other: &'static str, by: &'static str) -> SeparatingExperiment {
-    SeparatingExperiment { names: [one, other], by, same: false }
-}
-
-const fn same(one: &'static str, other: &'static str, by: &'static str) -> SeparatingExperiment {
-    SeparatingExperiment { names: [one, other], by, same: true }
+    SeparatingExperiment { names: [one, other], by }
 }
 
 static SEPARATING_EXPERIMENTS: [SeparatingExperiment; 28] = [
-    same(
+    pair(
         "transmission_compliance",
         "stress_relaxation",
         "No motion separates a series cable from a Maxwell branch, for they are one law of force and position: record the \
          drive's effort while it moves freely, where only the cable shows, or measure the position on both sides of the cable.",
     ),
-    same(
+    pair(
         "force_gain",
         "load_dependent_friction",
         "Record the drive's effort while pressing slowly in and out at two forces: friction changes its sign with the \
@@ -165,12 +159,6 @@ fn known(answer: &Term, rival: &Term) -> Option<&'static SeparatingExperiment> {
     SEPARATING_EXPERIMENTS
         .iter()
         .find(|pair| pair.names.iter().all(|name| names.contains(name)) && names[0] != names[1])
-}
-
-/// Whether force and position are the same under both, whatever the motion.
-#[must_use]
-pub fn is_equivalent(answer: &Term, rival: &Term) -> bool {
-    known(answer, rival).is_some_and(|pair| pair.same) || gain(answer, rival).is_some() || bias(answer, rival).is_some()
 }
 
 /// One plain sentence: the motion that would separate `answer` from `rival`; where none does from force and position

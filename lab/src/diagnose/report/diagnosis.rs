@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+pub use super::verdict::Verdict;
 pub use crate::diagnose::check::Finding;
 pub use crate::diagnose::experiment::Experiment;
-pub use crate::diagnose::model::contact_phase::Phase;
-pub use crate::diagnose::selection::verdict::Verdict;
+pub use crate::diagnose::phase::Phase;
 
 /// The diagnosis, in the layout of `palpate.diagnosis/1`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]

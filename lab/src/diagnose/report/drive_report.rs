@@ -2,10 +2,11 @@
 
 use super::diagnosis::{
     Alternative, BinnedResidual, Diagnosis, EffectEvidence, Evidence, FitQuality, Location, Nominal, Phase, Physics,
-    PlotData, Trace, Value, Verdict,
+    PlotData, Trace, Value,
 };
 use super::drive_map;
 use super::summary;
+use super::verdict::verdict;
 use crate::diagnose::drive::held_out::rms;
 use crate::diagnose::drive::input::Inputs;
 use crate::diagnose::drive::law::DriveLaw;
@@ -14,7 +15,7 @@ use crate::diagnose::drive::named::{NamedEffect, named};
 use crate::diagnose::drive::outcome::{Finding as Standing, Outcome};
 use crate::diagnose::drive::term::Term;
 use crate::diagnose::experiment;
-use crate::diagnose::model;
+use crate::diagnose::term;
 use crate::effects::{self, Place, slug};
 use crate::rig::{Coordinate, Drive, Rig};
 
@@ -57,16 +58,6 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         experiment: None,
     };
     (diagnosis, plots)
-}
-
-fn verdict(standing: Standing) -> Verdict {
-    match standing {
-        Standing::NoMismatch => Verdict::NoMismatch,
-        Standing::Parameters => Verdict::Parameters,
-        Standing::Explained => Verdict::Explained,
-        Standing::PartlyExplained => Verdict::PartlyExplained,
-        Standing::Unknown => Verdict::Unknown,
-    }
 }
 
 fn quality(outcome: &Outcome, coordinate: Coordinate) -> FitQuality {
@@ -178,7 +169,7 @@ fn alternatives(outcome: &Outcome) -> Vec<Alternative> {
         // What is new in the alternative comes first: it is what a reader has to weigh.
         let (shared, new): (Vec<&str>, Vec<&str>) = other.names.iter().partition(|name| own.contains(name));
         let gone = own.iter().copied().find(|name| !other.names.contains(name));
-        let law = |name: &str| Some(model::Term { effect: effects::find(name)?, form: 0 });
+        let law = |name: &str| Some(term::Term { effect: effects::find(name)?, form: 0 });
         let separated = match (gone.and_then(law), new.first().and_then(|new| law(new))) {
             (Some(gone), Some(new)) => experiment::separated_by(&gone, &new),
             _ => "A longer recording over more of the travel and at more speeds.".to_owned(),

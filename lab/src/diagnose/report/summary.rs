@@ -1,7 +1,7 @@
 //! The answer in words that a mechanic understands.
 
 use super::diagnosis::{Diagnosis, Verdict};
-use crate::diagnose::model::contact_phase;
+use crate::diagnose::phase;
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
@@ -31,7 +31,7 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                     " {} of it lies in the {} during {}.",
                     quantity::percent(100.0 * location.share),
                     location.channel,
-                    contact_phase::word(location.phase)
+                    phase::word(location.phase)
                 )
             });
             format!(

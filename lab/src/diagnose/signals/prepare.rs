@@ -2,10 +2,9 @@
 
 use anyhow::{Result, ensure};
 
-use super::bandwidth::analysis_filters;
 use super::mains_tone;
 use super::uniform_trial::UniformTrial;
-use crate::diagnose::thresholds::prepare::{MIN_TRIAL_ROWS, ROWS_PER_CUTOFF_PERIOD};
+use crate::diagnose::thresholds::prepare::MIN_TRIAL_ROWS;
 use crate::error::{InputError, UsageError};
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -32,18 +31,6 @@ fn without_mains_tone(rig: &Rig, raw: UniformTrial, trial: &Recording) -> Unifor
         force.iter_mut().zip(&trial.time).for_each(|(force, time)| *force -= tone.at(time - raw.origin));
     }
     UniformTrial { figures: Figures::of(rig, &quiet), hum: Some(tone.frequency), ..raw }
-}
-
-/// `uniform_trials` at a rate that the filters need: replicates of a million rows would show nothing that those of their means do not.
-pub fn decimate_to_need(rig: &Rig, uniform_trials: Vec<UniformTrial>) -> Vec<UniformTrial> {
-    let (contact, drive) = analysis_filters(rig, &uniform_trials);
-    let corner = contact.first().cutoff_hz().max(drive.first().cutoff_hz());
-    let parts = uniform_trials.first().map_or(1.0, |raw| 1.0 / (raw.period * ROWS_PER_CUTOFF_PERIOD * corner)) as usize;
-    if parts < 3 {
-        return uniform_trials;
-    }
-    let odd = parts - 1 + parts % 2;
-    uniform_trials.iter().map(|raw| raw.thinned(odd)).collect()
 }
 
 /// The longest period of `trials`, s.

@@ -60,7 +60,13 @@ static SPEC: EffectSpec = EffectSpec {
                     f64::NEG_INFINITY,
                     f64::INFINITY,
                 ),
-                Parameter::new("second_depth", Word::new("m", "rad"), "depth of the second boundary", 0.0, f64::INFINITY),
+                Parameter::new(
+                    "second_depth",
+                    Word::new("m", "rad"),
+                    "depth of the second boundary",
+                    0.0,
+                    f64::INFINITY,
+                ),
             ],
         },
     ],
@@ -85,7 +91,9 @@ impl Effect for LayeredStiffness {
             // A preload that is overcome at once, a soft way, a stop near its end; and layers of like thickness.
             let shallow = [0.01, 0.03, 0.08, 0.25, 0.45];
             let deep = [0.55, 0.7, 0.8, 0.88, 0.95];
-            let pairs = shallow.iter().flat_map(|first| deep.iter().map(move |second| (first * scene.depth, second * scene.depth)));
+            let pairs = shallow
+                .iter()
+                .flat_map(|first| deep.iter().map(move |second| (first * scene.depth, second * scene.depth)));
             return pairs.map(|(first, second)| Start::sized(&[added, first, added, second], &[0, 2])).collect();
         }
         if form == 0 {

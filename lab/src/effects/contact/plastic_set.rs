@@ -51,7 +51,13 @@ static SPEC: EffectSpec = EffectSpec {
                     0.0,
                     f64::INFINITY,
                 ),
-                Parameter::new("yield_force", Word::new("N", "N m"), "force up to which all springs back", 0.0, f64::INFINITY),
+                Parameter::new(
+                    "yield_force",
+                    Word::new("N", "N m"),
+                    "force up to which all springs back",
+                    0.0,
+                    f64::INFINITY,
+                ),
             ],
         },
     ],
@@ -76,7 +82,10 @@ impl Effect for PlasticSet {
         if form == 2 {
             let force = scene.stiffness * scene.depth;
             let rate = 0.2 * scene.depth / (force * scene.duration);
-            return [0.0, 0.2, 0.4, 0.6, 0.8].iter().map(|part| Start::sized(&[rate, (part * force).max(1e-3 * force)], &[0])).collect();
+            return [0.0, 0.2, 0.4, 0.6, 0.8]
+                .iter()
+                .map(|part| Start::sized(&[rate, (part * force).max(1e-3 * force)], &[0]))
+                .collect();
         }
         let depths = [0.3, 0.65].map(|part| part * scene.depth);
         depths

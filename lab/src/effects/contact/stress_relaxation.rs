@@ -96,7 +96,8 @@ impl Effect for StressRelaxation {
         match form {
             0 | 3 => times.iter().map(|time| Start::sized(&[size, *time], &[0])).collect(),
             1 | 4 => {
-                let pairs = (0..times.len()).flat_map(|first| (first + 2..times.len()).step_by(2).map(move |second| (first, second)));
+                let pairs = (0..times.len())
+                    .flat_map(|first| (first + 2..times.len()).step_by(2).map(move |second| (first, second)));
                 pairs.map(|(first, second)| Start::sized(&[size, times[first], size, times[second]], &[0, 2])).collect()
             }
             _ => {

@@ -36,7 +36,15 @@ impl TwoMassLink {
             let stretch = push.effort / self.stiffness;
             let lead = stretch + 0.5 * self.gap * stretch.signum();
             let (position, velocity) = (push.position, push.velocity);
-            state[..7].copy_from_slice(&[position + lead, velocity, position, velocity, push.effort, push.effort_rate, 1.0]);
+            state[..7].copy_from_slice(&[
+                position + lead,
+                velocity,
+                position,
+                velocity,
+                push.effort,
+                push.effort_rate,
+                1.0,
+            ]);
         }
         let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, ..] = **state;
         let part = steps.max(1.0).recip();

@@ -12,7 +12,8 @@ pub struct ForceDrift;
 const KNOTS: usize = 8;
 
 const fn knot(name: &'static str) -> Parameter {
-    Parameter::new(name, Word::new("N", "N m"), "zero at this eighth of the span", f64::NEG_INFINITY, f64::INFINITY).each_trial()
+    Parameter::new(name, Word::new("N", "N m"), "zero at this eighth of the span", f64::NEG_INFINITY, f64::INFINITY)
+        .each_trial()
 }
 
 static SPEC: EffectSpec = EffectSpec {
@@ -108,7 +109,8 @@ impl Effect for ForceDrift {
         match form {
             0 => vec![Start::sized(&[rate], &[0])],
             1 => vec![Start::sized(&[rate, size], &[0, 1])],
-            3 if scene.shows_sensor_zero() => {
+            // Seen in free motion alone: where that is a third of the time, between two contacts or more.
+            3 if scene.shows_sensor_zero() && scene.free_span > 0.3 && scene.visits >= 2 => {
                 let mut values = vec![size; KNOTS];
                 values.push(scene.duration);
                 vec![Start::sized(&values, &[0, 1, 2, 3, 4, 5, 6, 7])]
@@ -124,7 +126,8 @@ impl Effect for ForceDrift {
             0 => values[0] * time,
             1 => values[0] * time + values[1],
             3 => {
-                let place = (time / values[KNOTS].max(f64::MIN_POSITIVE) * (KNOTS - 1) as f64).clamp(0.0, (KNOTS - 1) as f64);
+                let place =
+                    (time / values[KNOTS].max(f64::MIN_POSITIVE) * (KNOTS - 1) as f64).clamp(0.0, (KNOTS - 1) as f64);
                 let before = (place as usize).min(KNOTS - 2);
                 let part = place - before as f64;
                 values[before] * (1.0 - part) + values[before + 1] * part

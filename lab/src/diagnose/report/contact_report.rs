@@ -1,0 +1,308 @@
+//! The diagnosis of the contact's channel, from what was identified of it.
+
+use super::contact_map;
+use super::diagnosis::{
+    Alternative, Diagnosis, EffectEvidence, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData, Trace,
+    Value,
+};
+use super::summary;
+use super::verdict::verdict;
+use crate::diagnose::contact::fit::Data;
+use crate::diagnose::contact::held_out::rms;
+use crate::diagnose::contact::model::index;
+use crate::diagnose::contact::outcome::{Finding as Standing, NamedTerm, Outcome};
+use crate::diagnose::contact::trial::ContactTrial;
+use crate::diagnose::experiment;
+use crate::diagnose::phase;
+use crate::diagnose::term::Term;
+use crate::effects::{self, Place, slug};
+use crate::rig::{Contact, Coordinate, Rig};
+
+/// The channel's name in the JSON.
+pub const CHANNEL: &str = "force";
+
+/// Diagnosis and plots of the contact alone.
+#[must_use]
+pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
+    let coordinate = rig.coordinate;
+    let fit = quality(outcome, coordinate);
+    let locations =
+        if outcome.finding == Standing::NoMismatch { Vec::new() } else { contact_map::locations(outcome, coordinate) };
+    let mut diagnosis = Diagnosis {
+        schema: "palpate.diagnosis/1",
+        verdict: verdict(outcome.finding),
+        summary: String::new(),
+        physics: physics(outcome, coordinate, &locations),
+        alternatives: alternatives(outcome),
+        locations,
+        channels: vec![fit.clone()],
+        fit,
+        nominal: nominal(outcome, rig),
+        checked: effects::ALL
+            .iter()
+            .map(|effect| effect.spec())
+            .filter(|spec| spec.place != Place::Drive)
+            .map(|spec| spec.name)
+            .collect(),
+        findings: findings(outcome),
+    };
+    diagnosis.summary = summary::summary(&diagnosis, coordinate);
+    let plots = PlotData {
+        rig: rig.name.clone(),
+        position_unit: coordinate.position_unit(),
+        force_unit: coordinate.force_unit(),
+        traces: traces(outcome),
+        maps: contact_map::maps(outcome, coordinate),
+        scores: scores(outcome),
+        experiment: None,
+    };
+    (diagnosis, plots)
+}
+
+fn quality(outcome: &Outcome, coordinate: Coordinate) -> FitQuality {
+    let data = data(outcome);
+    let [as_given, refitted, improved] = [0, 1, 2].map(|of| rms(&data, &outcome.residuals[of]));
+    let above = refitted.powi(2) - outcome.expected_noise.powi(2);
+    let taken = refitted.powi(2) - improved.powi(2);
+    FitQuality {
+        channel: CHANNEL,
+        unit: coordinate.force_unit(),
+        noise_floor: outcome.expected_noise,
+        as_given,
+        refitted,
+        improved,
+        held_out: true,
+        explained_share: if above > 0.0 { (taken / above).clamp(0.0, 1.0) } else { 0.0 },
+        band_hz: 0.5 / outcome.nominal.model.scales.step_s,
+    }
+}
+
+/// The rows of `outcome` with their worth.
+#[must_use]
+pub fn data(outcome: &Outcome) -> Data<'_> {
+    Data { trials: &outcome.trials, weights: outcome.weights.clone() }
+}
+
+/// The rig `given` with what was found of the contact: refitted values and every effect of the law.
+#[must_use]
+pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
+    let fit = if outcome.named.is_empty() { &outcome.nominal } else { &outcome.chosen };
+    let ends = (!outcome.named.is_empty()).then_some(outcome.intervals.as_slice());
+    let mut rig = with_law(given, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), ends);
+    if outcome.finding == Standing::NoMismatch {
+        rig.contact = given.contact;
+    }
+    rig
+}
+
+/// `given` with the values of a law, and the rigs of the laws that are not told from the answer.
+#[must_use]
+pub fn alternative_rigs(given: &Rig, outcome: &Outcome) -> Vec<Rig> {
+    let each = outcome.alternatives.iter().map(|other| {
+        let fit = &other.fit;
+        with_law(given, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), None)
+    });
+    each.collect()
+}
+
+fn with_law(
+    given: &Rig,
+    terms: &[Term],
+    values: &[f64],
+    first: usize,
+    trials: usize,
+    intervals: Option<&[[f64; 2]]>,
+) -> Rig {
+    let mut rig = given.clone();
+    rig.contact = given.contact.map(|contact| Contact {
+        stiffness: values[index::STIFFNESS],
+        damping: values[index::DAMPING],
+        surface: values[index::SURFACE],
+        ..contact
+    });
+    rig.effects.retain(|table| effects::find(&table.name).is_some_and(|e| e.spec().place == Place::Drive));
+    let mut next = first;
+    for term in terms {
+        let own = next..next + term.parameters().len();
+        next += term.all_parameters(trials).len();
+        let ends: Option<Vec<(f64, f64)>> =
+            intervals.map(|all| all[own.clone()].iter().map(|ends| (ends[0], ends[1])).collect());
+        rig.effects.push(effects::to_table(term.effect, term.form, given.coordinate, &values[own], ends.as_deref()));
+    }
+    rig
+}
+
+fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
+    let mut all: Vec<Physics> = outcome.named.iter().map(|named| described(outcome, named, coordinate)).collect();
+    all.sort_by(|a, b| b.evidence.held_out_gain.total_cmp(&a.evidence.held_out_gain));
+    if matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown) {
+        all.push(unknown(locations, !all.is_empty()));
+    }
+    all
+}
+
+fn described(outcome: &Outcome, named: &NamedTerm, coordinate: Coordinate) -> Physics {
+    let model = &outcome.chosen.model;
+    let (term, start) = (model.terms[named.at], model.first_value_of(named.at));
+    let spec = term.effect.spec();
+    let parameters = term.parameters().iter().enumerate().map(|(at, parameter)| Value {
+        name: parameter.name.to_owned(),
+        value: outcome.chosen.values[start + at],
+        unit: coordinate.pick(parameter.unit).to_owned(),
+        ci95: outcome.intervals[start + at],
+    });
+    Physics {
+        name: spec.name.to_owned(),
+        acts_in: spec.place.name(),
+        statement: format!("{}.", spec.statement),
+        equation: spec.forms[term.form].equation.to_owned(),
+        evidence: Evidence { held_out_gain: named.held_out_share, p_value: named.p_value },
+        parameters: parameters.collect(),
+        on_drive: term.effect.on_drive().map(str::to_owned),
+    }
+}
+
+fn unknown(locations: &[Location], beside: bool) -> Physics {
+    let place = locations
+        .first()
+        .map(|place| format!(", most of it during {} ({})", phase::word(place.phase), place.states))
+        .unwrap_or_default();
+    let what = if beside { "Beside that, something" } else { "Something" };
+    Physics {
+        name: "unknown".to_owned(),
+        acts_in: Place::Contact.name(),
+        statement: format!("{what} acts in the contact that none of the effects tried explains{place}."),
+        equation: String::new(),
+        evidence: Evidence { held_out_gain: 0.0, p_value: 0.0 },
+        parameters: Vec::new(),
+        on_drive: None,
+    }
+}
+
+fn alternatives(outcome: &Outcome) -> Vec<Alternative> {
+    let own = outcome.chosen.model.names(outcome.known_terms);
+    let each = outcome.alternatives.iter().map(|other| {
+        // What is new in the alternative comes first: it is what a reader has to weigh.
+        let (shared, new): (Vec<&str>, Vec<&str>) = other.names.iter().partition(|name| own.contains(name));
+        let gone = own.iter().copied().find(|name| !other.names.contains(name));
+        let law = |name: &str| Some(Term { effect: effects::find(name)?, form: 0 });
+        let separated = match (gone.and_then(law), new.first().and_then(|new| law(new))) {
+            (Some(gone), Some(new)) => experiment::separated_by(&gone, &new),
+            _ => "Contacts to more depths and at more speeds, with holds and slow releases.".to_owned(),
+        };
+        Alternative {
+            physics: new.iter().chain(&shared).map(|name| (*name).to_owned()).collect(),
+            held_out_gain: other.held_out_share,
+            separated_by: separated,
+        }
+    });
+    each.collect()
+}
+
+fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
+    let c = rig.coordinate;
+    let Some(contact) = rig.contact else { return Vec::new() };
+    let row = |name: &str, unit: &str, given: f64, at: usize| Nominal {
+        name: format!("{name}_{}", slug(unit)),
+        unit: unit.to_owned(),
+        given,
+        fitted: outcome.chosen.values[at],
+        ci95: outcome.intervals[at],
+    };
+    vec![
+        row("stiffness", c.stiffness_unit(), contact.stiffness, index::STIFFNESS),
+        row("damping", c.damping_unit(), contact.damping, index::DAMPING),
+        row("surface", c.position_unit(), contact.surface, index::SURFACE),
+    ]
+}
+
+/// What limits the answer.
+fn findings(outcome: &Outcome) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let model = &outcome.chosen.model;
+    let mut tell = |code: &'static str, place: &str, text: &str| {
+        findings.push(Finding { code, grave: false, place: place.to_owned(), text: text.to_owned() });
+    };
+    let sensor = outcome.trials.iter().map(|trial| trial.force_variance.sqrt()).fold(0.0, f64::max);
+    if outcome.expected_noise > 1.5 * sensor {
+        tell(
+            "quantization_limits_residual",
+            "position",
+            "One step of the position sensor is worth more force in this contact than the force sensor's noise: a residual below the \
+             expected noise is not told from rounding. A finer encoder would show what is below.",
+        );
+    }
+    let leaves = |trial: &ContactTrial| trial.position.iter().any(|x| *x < model.surface(&outcome.chosen.values, 0));
+    let relaxes = outcome.named.iter().any(|named| model.terms[named.at].name() == "stress_relaxation");
+    if relaxes && !outcome.trials.iter().any(leaves) {
+        tell(
+            "relaxation_or_force_lag",
+            "motion",
+            "The tool never leaves the surface: a force sensor that follows slowly (force_lag) would show what is named \
+             stress_relaxation here. Record how the force fades after a release.",
+        );
+    }
+    if model.own.surface {
+        tell(
+            "surface_in_each_trial",
+            "surface",
+            "The surface lies elsewhere in each trial: it was placed in each for itself.",
+        );
+    }
+    if model.own.zero {
+        tell(
+            "zero_in_each_trial",
+            "force",
+            "The force sensor's zero is another one in each trial: it was fitted in each for itself.",
+        );
+    }
+    if model.own.scale {
+        tell(
+            "stiffness_in_each_trial",
+            "force",
+            "All forces of a trial differ from the others' by one factor, as at another spot of the same body: it was fitted in each trial for itself.",
+        );
+    }
+    findings
+}
+
+fn traces(outcome: &Outcome) -> Vec<Trace> {
+    let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
+        let surface = outcome.chosen.model.surface(&outcome.chosen.values, at);
+        let by = |which: usize| -> Vec<f32> {
+            trial.force.iter().zip(&outcome.residuals[which][at]).map(|(force, rest)| (force - rest) as f32).collect()
+        };
+        let noise = |weight: &f64| if *weight > 0.0 { weight.recip() as f32 } else { outcome.expected_noise as f32 };
+        Trace {
+            trial: trial.name.clone(),
+            channel: CHANNEL,
+            time: trial.time.iter().map(|time| trial.origin_s + time).collect(),
+            depth: trial.position.iter().map(|position| (position - surface) as f32).collect(),
+            measured: trial.force.iter().map(|force| *force as f32).collect(),
+            as_given: by(0),
+            refitted: by(1),
+            improved: by(2),
+            expected_noise: outcome.weights[at].iter().map(noise).collect(),
+            valid: trial.counts.clone(),
+        }
+    });
+    each.collect()
+}
+
+fn scores(outcome: &Outcome) -> Vec<EffectEvidence> {
+    let named = outcome.chosen.model.names(outcome.known_terms);
+    let open: Vec<&str> = outcome.alternatives.iter().flat_map(|other| other.names.iter().copied()).collect();
+    let each = outcome.singles.iter().map(|single| EffectEvidence {
+        name: single.name,
+        held_out_gain: single.share,
+        p_value: single.p_value,
+        role: if named.contains(&single.name) {
+            "answer"
+        } else if open.contains(&single.name) {
+            "alternative"
+        } else {
+            ""
+        },
+    });
+    each.collect()
+}
