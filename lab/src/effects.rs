@@ -14,7 +14,6 @@ mod drive;
 mod drive_state;
 mod effect_spec;
 mod excitation_stats;
-mod load_side;
 mod reading;
 mod resolved;
 mod sensor;
@@ -25,7 +24,6 @@ pub use cubic_segment::CubicSegment;
 pub use drive_state::DriveState;
 pub use effect_spec::{EffectSpec, Form, Limit, Parameter, Place, Stage, key_of, slug};
 pub use excitation_stats::{Abscissa, ExcitationStats, FrequencySearch, Start, ToneWeight, geometric, linear};
-pub use load_side::LoadSideSignals;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 
@@ -59,12 +57,6 @@ pub trait Effect: Sync {
     /// Where a search for its parameters starts, for form `form`, in the measures of `scene`.
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start>;
 
-    /// Whether form `form` only rounds off another of this effect: it is tried where that one was taken up, and nowhere else. A corner
-    /// that may be as round as it likes bends like any other law.
-    fn refines(&self, _form: usize) -> bool {
-        false
-    }
-
     /// Names of effects of which one has to be there for form `form` to differ from a simpler one; none where it always does.
     fn builds_on(&self, _form: usize) -> &'static [&'static str] {
         &[]
@@ -78,20 +70,8 @@ pub trait Effect: Sync {
     /// Acts on the contact. `values` are in the order of the form's parameters.
     fn act_on_contact(&self, _form: usize, _values: &[f64], _state: &mut EffectState, _touch: &mut ContactState) {}
 
-    /// The greatest effort that it lets pass, for effects of the drive that cut the command's peaks: along a recording they
-    /// are cut row by row, before any filter.
-    fn effort_limit(&self, _form: usize, _values: &[f64]) -> Option<f64> {
-        None
-    }
-
     /// Acts on the drive.
     fn act_on_drive(&self, _form: usize, _values: &[f64], _state: &mut EffectState, _push: &mut DriveState) {}
-
-    /// What a motor's own motion, ahead of the tool's, takes from the effort along a recording, row by row. Effects that say
-    /// so do not `push` there.
-    fn transmission_loss(&self, _form: usize, _values: &[f64], _side: &LoadSideSignals<'_>) -> Option<Vec<f64>> {
-        None
-    }
 
     /// The estimator of the library that follows it on the drive, with its regressor; `None` where none does.
     fn on_drive(&self) -> Option<&'static str> {

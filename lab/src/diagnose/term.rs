@@ -18,18 +18,6 @@ impl Term {
         self.effect.spec().forms[self.form].parameters
     }
 
-    /// See [`crate::effects::Effect::refines`].
-    #[must_use]
-    pub fn refines(&self) -> bool {
-        self.effect.refines(self.form)
-    }
-
-    /// Energy that its free parameters have to take to be worth having.
-    #[must_use]
-    pub fn price(&self) -> f64 {
-        4.0 * self.parameters().iter().filter(|parameter| !parameter.fixed).count() as f64
-    }
-
     /// Its parameters and, after them, for each trial but the first those that each trial has for itself.
     #[must_use]
     pub fn all_parameters(&self, trials: usize) -> Vec<Parameter> {

@@ -10,9 +10,10 @@ pub const LEAST_SHARE: f64 = 0.2;
 /// Part, in root mean square, of all that the nominal law leaves above the noise.
 pub const LEAST_PART_OF_ALL: f64 = 0.1;
 
-/// Power over the sensors' own from which a law is one of a real thing that no textbook law reaches, and the shares that an effect has to
-/// take there: a third of what is left without it, and a quarter of all in root mean square.
+/// Power over the sensors' own from which a law is one of a real thing that no textbook law reaches; what an effect has to
+/// take there is larger: a third of what is left without it, and a quarter of all in root mean square.
 pub const FAR_FROM_NOISE: f64 = 2.0;
+/// Shares of what is left, and of all in root mean square, that count there.
 pub const FAR_SHARES: [f64; 2] = [0.33, 0.25];
 
 /// Part of the force's deviation below which nothing is told as missing, whatever its significance: no contact is known that well.

@@ -44,10 +44,6 @@ impl Effect for EnvironmentMass {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let mass = 0.05 * scene.force / scene.acceleration.max(f64::MIN_POSITIVE);
         if form == 0 {

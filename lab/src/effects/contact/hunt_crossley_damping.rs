@@ -56,10 +56,6 @@ impl Effect for HuntCrossleyDamping {
         Some("ParameterRls with ContactModel::GrowingDamping follows K, B and alpha: regressor x v")
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let growth = 0.1 * scene.stiffness / scene.speed.max(f64::MIN_POSITIVE);
         if form == 0 {

@@ -80,10 +80,6 @@ impl Effect for LayeredStiffness {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let depths = linear(0.15, 0.9, 8).into_iter().map(|part| part * scene.depth);
         let added = 0.1 * scene.stiffness;

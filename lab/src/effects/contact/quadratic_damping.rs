@@ -52,10 +52,6 @@ impl Effect for QuadraticDamping {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let speed = scene.speed.max(f64::MIN_POSITIVE);
         let drag = 0.1 * scene.stiffness * scene.depth;

@@ -47,10 +47,6 @@ impl Effect for Cogging {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, _form: usize, _scene: &ExcitationStats) -> Vec<Start> {
         Vec::new()
     }

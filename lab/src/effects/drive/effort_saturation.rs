@@ -34,10 +34,6 @@ impl Effect for EffortSaturation {
         linear(0.2, 0.95, 12).iter().map(|part| Start::at(&[part * scene.effort])).collect()
     }
 
-    fn effort_limit(&self, _form: usize, values: &[f64]) -> Option<f64> {
-        Some(values[0].abs())
-    }
-
     fn act_on_drive(&self, _form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         push.effort = push.effort.max(-values[0].abs()).min(values[0].abs());
     }

@@ -54,10 +54,6 @@ impl Effect for StribeckFriction {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, _form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let level = 0.03 * scene.effort;
         let slowest = (0.03 * scene.speed).max(scene.slowest());

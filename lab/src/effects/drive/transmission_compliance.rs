@@ -64,10 +64,6 @@ impl Effect for TransmissionCompliance {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // Without a force sensor nothing but the noise of the acceleration stands against a hidden motor.
         if !scene.has_force {

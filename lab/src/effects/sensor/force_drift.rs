@@ -95,10 +95,6 @@ impl Effect for ForceDrift {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 2
-    }
-
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         // In one contact without a free moment after it, a drift is anything that grows with depth.
         if !scene.separates_time_from_depth() && scene.free_span < 0.5 {

@@ -44,10 +44,6 @@ impl Effect for ForceSaturation {
         &SPEC
     }
 
-    fn refines(&self, form: usize) -> bool {
-        form == 1
-    }
-
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let limits = linear(0.4, 0.99, 10).into_iter().map(|part| part * scene.force);
         if form == 0 {
