@@ -69,7 +69,7 @@ pub fn diagnose(
     let by_force = |rig: &Rig| touched(rig, origin, trials, &figures, say);
     let mut contact = if is_touching { by_force(&contact_rig(rig, &[]))? } else { None };
     let drive = drive::prepare::is_recorded(rig, trials).then(|| {
-        let zeroed = contact.as_ref().map(|contact| zeroed(&contact_report::refined(rig, contact), trials));
+        let zeroed = contact.as_ref().map(|contact| zeroed(contact, trials));
         identified(rig, zeroed.as_deref().unwrap_or(trials), known, seed, say)
     });
     let mut drive = drive.flatten();
@@ -121,34 +121,37 @@ fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {
 }
 
 /// `trials` with the zero of the force sensor taken off, as the contact found it: the drive would take it for a load.
-fn zeroed(improved: &Rig, trials: &[Recording]) -> Vec<Recording> {
-    let zeros: Vec<effects::Resolved> = effects::resolve_all(improved, "the improved rig")
-        .unwrap_or_default()
-        .into_iter()
-        .filter(|effect| ["force_bias", "force_drift"].contains(&effect.effect.spec().name))
+fn zeroed(contact: &contact::outcome::Outcome, trials: &[Recording]) -> Vec<Recording> {
+    let fit = &contact.chosen;
+    let zeros: Vec<usize> = contact
+        .named
+        .iter()
+        .map(|named| named.at)
+        .filter(|at| ["force_bias", "force_drift"].contains(&fit.model.terms[*at].name()))
         .collect();
-    let zeroed = |trial: &Recording| {
+    let zeroed = |(number, trial): (usize, &Recording)| {
         let mut trial = trial.clone();
         let Some(force) = &mut trial.force else { return trial };
-        let (start, step) = (0.0, (trial.time[trial.time.len() - 1] - trial.time[0]) / (trial.time.len() - 1) as f64);
-        for zero in &zeros {
+        let step = (trial.time[trial.time.len() - 1] - trial.time[0]) / (trial.time.len() - 1) as f64;
+        for &at in &zeros {
+            let (term, first) = (fit.model.terms[at], fit.model.first_value_of(at));
+            let values = term.in_trial(&fit.values[first..first + fit.model.count_of(&term)], number);
             // What the sensor shows of no force at all.
-            let mut shown = vec![0.0; force.len()];
-            let acceleration = vec![0.0; force.len()];
+            let (mut shown, acceleration) = (vec![0.0; force.len()], vec![0.0; force.len()]);
             let mut reading = effects::Reading {
-                start,
+                start: 0.0,
                 step,
                 filter_width: 0.0,
                 added_filter_width: 0.0,
                 acceleration: &acceleration,
                 force: &mut shown,
             };
-            zero.effect.act_on_reading(zero.form, &zero.values, &mut reading);
+            term.effect.act_on_reading(term.form, &values, &mut reading);
             force.iter_mut().zip(&shown).for_each(|(force, shown)| *force -= shown);
         }
         trial
     };
-    if zeros.is_empty() { trials.to_vec() } else { trials.iter().map(zeroed).collect() }
+    if zeros.is_empty() { trials.to_vec() } else { trials.iter().enumerate().map(zeroed).collect() }
 }
 
 /// Whether the contact names `name`, or what a slow sensor and a late one have in common.

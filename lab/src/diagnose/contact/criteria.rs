@@ -35,6 +35,9 @@ pub const UNKNOWN_PART_OF_FORCE: f64 = 0.005;
 /// Share of the mismatch that named effects have to take to stand for it: they halve what is left, in root mean square.
 pub const TOLD_SHARE: f64 = 0.75;
 
+/// Share below which they are not told at all where something notable is left: most of the mismatch is something else.
+pub const LEAST_TOLD_SHARE: f64 = 0.5;
+
 /// Part of the mismatch's power that may be left beside named effects.
 pub const MOST_LEFT: f64 = 0.25;
 

@@ -3,8 +3,8 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
 use super::criteria::{
-    LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_VUONG, MOST_LEFT, NOTABLE_POWER, TOLD_SHARE,
-    UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
+    LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, LEAST_VUONG, MOST_LEFT, NOTABLE_POWER,
+    TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
 };
 use super::fit::{Data, Effort, Fit, Rest};
 use super::held_out::{Folds, HeldOut, rms};
@@ -228,7 +228,13 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let folds = Folds::of(data);
     let given = as_given(search, start);
     let refitted = folds.held_out(data, &search.nominal);
-    let (fit, improved, named) = believed(search, &folds, chosen.fit.clone());
+    let (mut fit, mut improved, mut named) = believed(search, &folds, chosen.fit.clone());
+    if takes_too_little(search, &fit, &named) {
+        // Something is there, and it is not that.
+        fit = search.nominal.clone();
+        improved = folds.held_out(data, &fit);
+        named.clear();
+    }
     let rest = Rest::of(data, &fit);
     let columns = |fit: &Fit| -> Vec<Vec<f64>> {
         (0..data.trials.len()).map(|trial| data.residual(&fit.model, &fit.values, trial)).collect()
@@ -362,6 +368,14 @@ fn alternatives(
         Alternative { names: other.model.names(first), held_out_share: share.clamp(0.0, 1.0), fit: other.clone() }
     });
     told.collect()
+}
+
+/// Whether named effects leave something notable and take less of the mismatch than they leave.
+fn takes_too_little(search: &Search<'_>, fit: &Fit, named: &[NamedTerm]) -> bool {
+    let expected = search.data.rows() as f64;
+    let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
+    let left = (fit.energy - expected).max(0.0);
+    !named.is_empty() && Rest::of(&search.data, fit).power > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
 }
 
 fn finding(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Finding {

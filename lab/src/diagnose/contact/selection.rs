@@ -182,6 +182,7 @@ impl Search<'_> {
         say("the contact: without each effect");
         let fit = self.pruned(best);
         let fit = self.exchanged(fit, say);
+        let fit = self.simplest(fit, &sets);
         Chosen { fit, singles, sets }
     }
 
@@ -278,6 +279,21 @@ impl Search<'_> {
             best = self.pruned(fit);
         }
         best
+    }
+
+    /// The simplest of `sets` that the recordings do not tell from `best`; that where there is none.
+    fn simplest(&self, best: Fit, sets: &[Fit]) -> Fit {
+        let is_as_good = |other: &&Fit| {
+            let more = free(&best).saturating_sub(free(other));
+            let worth = self.worth(&best, other);
+            more > 0
+                && !other.model.terms.is_empty()
+                && (worth.gain < LEAST_GAIN + worth.price * more as f64 || worth.vuong < LEAST_VUONG)
+                && self.is_worth(other, &self.nominal)
+        };
+        let simpler =
+            sets.iter().filter(is_as_good).min_by(|a, b| free(a).cmp(&free(b)).then(a.energy.total_cmp(&b.energy)));
+        simpler.map_or(best.clone(), |simpler| self.pruned(simpler.clone()))
     }
 
     /// `fit` without term `at`, refitted.
