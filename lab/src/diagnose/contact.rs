@@ -11,5 +11,7 @@ pub mod prepare;
 pub mod projection;
 pub mod scales;
 pub mod selection;
+#[cfg(test)]
+pub mod testing;
 pub mod tones;
 pub mod trial;

@@ -312,3 +312,29 @@ fn integrated_autocorrelation(trials: &[&[f64]]) -> f64 {
     }
     time.max(1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_repeat_one_error_count_once() {
+        let mut state = 11u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt()
+        };
+        let white: Vec<f64> = (0..20_000).map(|_| uniform()).collect();
+        // The estimate's deviation is sqrt(2 (2 window + 1) / rows) of it: 4 % at a window of six rows.
+        let alone = integrated_autocorrelation(&[&white]);
+        assert!((1.0..1.15).contains(&alone), "{alone}");
+        // Held for ten rows: ten rows tell no more than one; a triangle of autocorrelations sums to ten, its estimate to a fifth.
+        let held: Vec<f64> = white[..2000].iter().flat_map(|value| [*value; 10]).collect();
+        let together = integrated_autocorrelation(&[&held]);
+        assert!((8.0..12.5).contains(&together), "{together}");
+        // Parted into trials it is the same.
+        let (first, second) = held.split_at(10_000);
+        let parted = integrated_autocorrelation(&[first, second]);
+        assert!((parted / together - 1.0).abs() < 0.05, "{parted} {together}");
+    }
+}

@@ -1,0 +1,73 @@
+//! A contact whose truth is known, for tests.
+
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha12Rng;
+use rand_distr::{Distribution as _, Normal};
+
+use super::outcome::NominalContact;
+use super::trial::ContactTrial;
+use crate::recording::Recording;
+use crate::rig::Contact;
+use crate::sensors::{Channel, Figures};
+
+/// Rows a second.
+const RATE: f64 = 250.0;
+
+/// Noise of the force sensor, N.
+pub const FORCE_NOISE: f64 = 0.02;
+
+/// Noise of the encoder, m.
+const POSITION_NOISE: f64 = 2e-6;
+
+/// A pad that is pressed eight millimetres deep, at two depths and speeds, by a law beside spring and damper.
+pub struct TestContact {
+    /// N/m.
+    pub stiffness: f64,
+    /// N s/m.
+    pub damping: f64,
+    /// Force of a branch that relaxes, N/m, in 0.4 s.
+    pub branch: f64,
+    /// Zero of the sensor, N.
+    pub zero: f64,
+}
+
+impl TestContact {
+    /// Spring and damper alone.
+    pub const PLAIN: Self = Self { stiffness: 300.0, damping: 6.0, branch: 0.0, zero: 0.0 };
+
+    /// The rig file of it.
+    pub fn nominal() -> NominalContact {
+        let contact = Contact { surface: 0.0, stiffness: 280.0, damping: 5.0, bilateral: false };
+        NominalContact { contact, force_zero: 0.0, is_rotary: false, effects: Vec::new() }
+    }
+
+    /// What is recorded in twelve seconds.
+    pub fn recording(&self, seed: u64) -> Recording {
+        let mut random = ChaCha12Rng::seed_from_u64(seed);
+        let [force_noise, position_noise] = [FORCE_NOISE, POSITION_NOISE].map(|sigma| Normal::new(0.0, sigma).unwrap());
+        let time: Vec<f64> = (0..(12.0 * RATE) as usize).map(|row| row as f64 / RATE).collect();
+        let depth = |t: f64| 4e-3 * (1.0 - (4.0 * t).cos()) * (1.0 + 0.4 * (1.1 * t).sin()) - 2e-3;
+        let (mut branch, mut before) = (0.0, depth(0.0).max(0.0));
+        let (mut position, mut force) = (Vec::new(), Vec::new());
+        for t in &time {
+            let x = depth(*t);
+            let v = (depth(t + 1e-5) - depth(t - 1e-5)) / 2e-5;
+            let inside = x.max(0.0);
+            // Exact for a depth that is straight between two rows.
+            let ratio = 1.0 / (RATE * 0.4);
+            branch = branch * f64::exp(-ratio) + self.branch * (inside - before) * (-(-ratio).exp_m1() / ratio);
+            before = inside;
+            let law = if x > 0.0 { self.stiffness * x + self.damping * v } else { 0.0 };
+            force.push((law + branch).max(0.0) + self.zero + force_noise.sample(&mut random));
+            position.push(x + position_noise.sample(&mut random));
+        }
+        Recording { name: format!("trial-{seed}.csv"), time, position, force: Some(force), ..Recording::default() }
+    }
+
+    /// The same as the model sees it.
+    pub fn trial(&self, seed: u64) -> ContactTrial {
+        let channel = |noise: f64| Channel { resolution: 0.0, noise };
+        let figures = Figures { position: channel(POSITION_NOISE), force: Some(channel(FORCE_NOISE)), effort: None };
+        ContactTrial::new(&self.recording(seed), figures, 1).unwrap()
+    }
+}
