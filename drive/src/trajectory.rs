@@ -225,7 +225,7 @@ impl TrajectoryFollower {
             return Err(StopReason::Depth);
         }
         // Comparisons that a value that is no number fails.
-        if !(sample.force.abs() <= config.force) {
+        if sample.force.is_nan() || sample.force.abs() > config.force {
             return Err(StopReason::Force);
         }
         let place = self.taken % SPEED_TICKS;
@@ -234,7 +234,7 @@ impl TrajectoryFollower {
         let is_full = self.taken >= SPEED_TICKS;
         self.taken = if is_full { SPEED_TICKS + (self.taken + 1) % SPEED_TICKS } else { self.taken + 1 };
         let way = (sample.position - before).abs() * f32::from(TICK_HZ) / SPEED_TICKS as f32;
-        if is_full && !(way <= config.speed) { Err(StopReason::Speed) } else { Ok(()) }
+        if is_full && (way.is_nan() || way > config.speed) { Err(StopReason::Speed) } else { Ok(()) }
     }
 }
 

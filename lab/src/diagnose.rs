@@ -41,7 +41,7 @@ pub struct Found {
     pub pictures: PlotData,
     /// The improved rig.
     pub improved: Rig,
-    /// The rigs of laws of the contact that the recordings do not tell from the answer.
+    /// The improved rig with each law of the contact that the recordings do not tell from the answer's.
     pub alternatives: Vec<Rig>,
 }
 
@@ -85,11 +85,11 @@ pub fn diagnose(
     if let (Some(contact), Some(drive)) = (&contact, &mut drive) {
         drive.leave_to_the_contact(|name| is_told(contact, name));
     }
-    let alternatives = contact.as_ref().map(|contact| contact_report::alternative_rigs(rig, contact));
     let Some(((mut answer, pictures), improved)) = together(rig, contact.as_ref(), drive.as_ref()) else {
         bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
     };
     answer.findings.splice(0..0, findings);
+    let alternatives = contact.as_ref().map(|contact| contact_report::alternative_rigs(&improved, contact));
     Ok(Found { answer, pictures, improved, alternatives: alternatives.unwrap_or_default() })
 }
 

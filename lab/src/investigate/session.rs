@@ -287,9 +287,21 @@ fn is_confirmed(investigation: &Investigation, standing: &Standing) -> bool {
 fn explanations_of(found: &Found, trials: &[Recording], closed_loop: &LoopModel, noise: &Noise) -> Vec<Explanation> {
     let names = found.answer.physics.iter().map(|physics| physics.name.clone()).filter(|name| name != UNKNOWN);
     let answer = Explanation { physics: names.collect(), rig: found.improved.clone() };
-    let alternatives: Vec<Vec<String>> =
-        found.answer.alternatives.iter().map(|alternative| alternative.physics.clone()).collect();
-    explanations(answer, &alternatives, trials, closed_loop, noise)
+    let names = |of: &[String]| of.iter().cloned().collect::<std::collections::BTreeSet<String>>();
+    let known = |rig: &Rig| names(&rig.effects.iter().map(|table| table.name.clone()).collect::<Vec<_>>());
+    // The contact's alternatives come with fitted rigs of their own.
+    let (mut fitted, mut open) = (Vec::new(), Vec::new());
+    for alternative in &found.answer.alternatives {
+        let wanted = names(&alternative.physics);
+        let own = found.alternatives.iter().find(|rig| wanted.is_subset(&known(rig)));
+        match own {
+            Some(rig) => fitted.push(Explanation { physics: alternative.physics.clone(), rig: rig.clone() }),
+            None => open.push(alternative.physics.clone()),
+        }
+    }
+    let mut all = explanations(answer, &open, trials, closed_loop, noise);
+    all.extend(fitted);
+    all
 }
 
 /// Expected noise of each channel, no less than what `found` leaves in it.

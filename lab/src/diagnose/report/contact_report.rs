@@ -95,12 +95,12 @@ pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
     rig
 }
 
-/// `given` with the values of a law, and the rigs of the laws that are not told from the answer.
+/// The `improved` rig with each law that the recordings do not tell from the answer's in the place of it.
 #[must_use]
-pub fn alternative_rigs(given: &Rig, outcome: &Outcome) -> Vec<Rig> {
+pub fn alternative_rigs(improved: &Rig, outcome: &Outcome) -> Vec<Rig> {
     let each = outcome.alternatives.iter().map(|other| {
         let fit = &other.fit;
-        with_law(given, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), None)
+        with_law(improved, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), None)
     });
     each.collect()
 }

@@ -23,7 +23,7 @@ const MOTOR_SHARE: Parameter =
     Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8);
 
 const DAMPING_RATIO: Parameter =
-    Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.005, 0.3);
+    Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.0, 5.0);
 
 static SPEC: EffectSpec = EffectSpec {
     name: "transmission_compliance",
