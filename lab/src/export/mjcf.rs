@@ -354,7 +354,7 @@ impl Writer<'_> {
         if self.passive.is_empty() {
             return;
         }
-        match self.model.root.children().filter(|node| node.has_tag_name("actuator")).next_back() {
+        match self.model.root.children().rfind(|node| node.has_tag_name("actuator")) {
             Some(actuators) => self.changes.append(actuators, &self.passive),
             None => {
                 let lines: Vec<String> = std::iter::once("<actuator>".to_owned())

@@ -220,11 +220,11 @@ impl DriveLink<'_> {
         self.references.top_up(&mut self.client, self.row, |_| ())?;
         let effort = self.tick(self.word(measurement.position, measurement.force))?;
         // The drive says zero where it has ended; it is asked only then.
-        if effort == 0.0 {
-            if let TrajectoryState::Stopped(reason) = status(&mut self.client, |_| ())?.state {
-                let Measurement { time, position, force, .. } = *measurement;
-                self.ended = Some((ending(reason, self.request.limits, time, position, force), self.row));
-            }
+        if effort == 0.0
+            && let TrajectoryState::Stopped(reason) = status(&mut self.client, |_| ())?.state
+        {
+            let Measurement { time, position, force, .. } = *measurement;
+            self.ended = Some((ending(reason, self.request.limits, time, position, force), self.row));
         }
         Ok(effort)
     }

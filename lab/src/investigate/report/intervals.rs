@@ -14,7 +14,7 @@ const INSET: f64 = 0.04;
 
 pub(super) fn section(rounds: &[Round]) -> Markup {
     let states = || rounds.iter().filter_map(|round| round.state.as_ref().map(|state| (round.number, state)));
-    let Some((_, last)) = states().last() else { return html! {} };
+    let Some((_, last)) = states().next_back() else { return html! {} };
     let history = |value: &ValueState| -> Vec<(u64, ValueState)> {
         let same = |other: &&ValueState| other.effect == value.effect && other.name == value.name;
         states().filter_map(|(number, state)| Some((number, state.values.iter().find(same)?.clone()))).collect()
