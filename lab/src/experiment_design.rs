@@ -1,7 +1,7 @@
 //! Design of experiments on rigs alone: which motion discriminates best between explanations of the same recordings.
 //!
 //! An explanation is a [`Rig`](crate::rig::Rig) with fitted values ([`explanation`]). Candidate motions ([`candidates`], [`path`])
-//! become references of the closed loop ([`reference`]), every explanation is simulated along each ([`prediction`]), and what their
+//! become references of the closed loop ([`mod@reference`]), every explanation is simulated along each ([`prediction`]), and what their
 //! responses differ by, in units of the sensors' noise and after the best small change of the other's values, is the candidate's
 //! worth ([`discrimination`]; T-optimality with a local refit). States not visited yet ([`coverage`]) are the second merit.
 //! [`planner`] fills the time of a trial with the candidates that decide most. Nothing here knows how a diagnosis works.

@@ -162,7 +162,7 @@ pub fn refitted(trials: &[DriveTrial], rig: &NominalDrive) -> Option<[f64; 2]> {
     Some([fit.values[index::INERTIA], fit.values[index::VISCOUS]])
 }
 
-/// Missing force of `trials` under the values of `rig`, a column a trial, seen up to [`LOWEST_BAND_HZ`]; the effort's delay alone is fitted.
+/// Missing force of `trials` under the values of `rig`, a column a trial, seen up to 5 Hz; the effort's delay alone is fitted.
 /// `None` where they show no motion.
 #[must_use]
 pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Vec<f64>>> {
