@@ -56,7 +56,7 @@ const BEAM: usize = 2;
 const TRIED: usize = 14;
 
 /// Of these, how many are fitted to the end.
-const COARSELY_POLISHED: usize = 8;
+const COARSELY_POLISHED: usize = 10;
 
 /// And of these, on every row.
 const POLISHED: usize = 5;
@@ -222,11 +222,16 @@ impl Search<'_> {
         best
     }
 
-    /// The best of `quick`, one of each set of names, to the end.
-    fn polished(&self, quick: Vec<Fit>) -> Vec<Fit> {
+    /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
+    /// as well the one with the fewest is polished, and leaves room for other effects.
+    fn polished(&self, mut quick: Vec<Fit>) -> Vec<Fit> {
+        let Some(least) = quick.iter().min_by(|a, b| a.energy.total_cmp(&b.energy)) else { return Vec::new() };
+        let rest = Rest::of(&self.coarse, least);
+        quick.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
         let mut fits: Vec<Fit> = quick.into_iter().take(COARSELY_POLISHED).collect();
         fits.par_iter_mut().for_each(|fit| *fit = self.coarse.fit(&fit.model, &fit.values, Effort::FULL));
-        fits.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        fits.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
+        let mut fits = distinct(fits);
         fits.truncate(POLISHED);
         fits.par_iter().map(|fit| self.data.fit(&fit.model, &fit.values, Effort::FULL)).collect()
     }
