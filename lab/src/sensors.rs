@@ -59,7 +59,7 @@ impl Figures {
 
 /// Steps of noise from which rounding is as good as noise: Gaussian noise of half a step leaves less than two per cent of
 /// the rounding's error tied to where the truth lies in the step.
-const DITHER_FRACTION: f64 = 0.5;
+pub const DITHER_FRACTION: f64 = 0.5;
 
 impl Channel {
     fn thinned(self, parts: usize) -> Self {

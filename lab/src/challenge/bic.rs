@@ -15,7 +15,7 @@ use super::case_files::{self, CaseFiles};
 use crate::diagnose::contact::fit::{Data, Effort, Fit};
 use crate::diagnose::contact::held_out::{Folds, rms};
 use crate::diagnose::contact::model::index;
-use crate::diagnose::contact::outcome::{flat_weights, nominal_fit};
+use crate::diagnose::contact::outcome::nominal_fit;
 use crate::diagnose::contact::prepare;
 use crate::diagnose::contact::projection::Projection;
 use crate::diagnose::sensed;
@@ -48,7 +48,7 @@ pub fn answer(folder: &Path) -> Result<BaselineResult> {
     };
     let figures: Vec<Figures> = sensed(&rig, &origin, &trials)?.iter().map(|trial| trial.figures).collect();
     let [_, trials] = prepare::trials(&trials, &figures);
-    let data = Data { trials: &trials, weights: flat_weights(&trials) };
+    let data = Data::new(&trials);
     let first = nominal_fit(&data, &nominal);
     let known = first.model.terms.len();
     let chosen = select(&data, first.clone());

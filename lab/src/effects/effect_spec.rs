@@ -90,6 +90,8 @@ pub enum Limit {
     ResonanceInBand,
     /// A pitch that comes round within the way, or it is a slope, and is longer than two steps of the encoder, or it is theirs.
     RepeatedPitch,
+    /// A length of at least a step of the encoder, or it is the encoder's rounding.
+    ResolvableLength,
     /// A speed at which the encoder steps within the filter, or it is the encoder's.
     MinSpeed,
 }

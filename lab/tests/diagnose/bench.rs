@@ -132,11 +132,12 @@ impl Case {
     }
 }
 
-/// A force sensor off its zero by 0.3 N: physics, a rival, locations and an experiment, diagnosed once for all tests.
-pub fn biased() -> &'static (Value, String) {
-    static BIASED: OnceLock<(Value, String)> = OnceLock::new();
-    BIASED.get_or_init(|| {
-        let case = Case::led(BENCH, "[[effect]]\nname = \"force_bias\"\nbias_n = 0.3\n");
+/// A force that is written down 2 ms late, for which a slow sensor would do as well: physics, a rival, locations and an experiment,
+/// diagnosed once for all tests.
+pub fn late() -> &'static (Value, String) {
+    static LATE: OnceLock<(Value, String)> = OnceLock::new();
+    LATE.get_or_init(|| {
+        let case = Case::led(BENCH, "[[effect]]\nname = \"channel_delay\"\ndelay_s = 0.002\n");
         let answer = case.diagnose(&["--experiment", "next.csv"]);
         (answer, fs::read_to_string(case.path("next.csv")).unwrap())
     })

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::bench::{BENCH, Case, FADES, biased, fit, names, palpate};
+use crate::bench::{BENCH, Case, FADES, fit, late, names, palpate};
 
 const OUT: [&str; 3] = ["json", "html", "toml"];
 
@@ -45,7 +45,7 @@ fn the_order_of_trials_changes_nothing_and_a_simulation_is_what_is_held_against_
 
 #[test]
 fn where_there_are_rivals_an_experiment_is_written() {
-    let (answer, trajectory) = biased();
+    let (answer, trajectory) = late();
     assert!(!answer["rivals"].as_array().unwrap().is_empty());
     let mut rows = csv::Reader::from_reader(trajectory.as_bytes());
     assert_eq!(rows.headers().unwrap(), vec!["t_s", "reference_m"]);

@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result};
 
 use crate::diagnose::contact::fit::{Data, Effort};
 use crate::diagnose::contact::model::index;
-use crate::diagnose::contact::outcome::{flat_weights, law_of, nominal_fit};
+use crate::diagnose::contact::outcome::{law_of, nominal_fit};
 use crate::diagnose::contact::prepare;
 use crate::diagnose::contact::trial::ContactTrial;
 use crate::diagnose::{drive, sensed};
@@ -39,7 +39,7 @@ pub fn refitted(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Rig> {
     if let Some(contact) = fresh.contact.as_mut().filter(|_| prepare::is_recorded(rig, trials)) {
         let nominal = prepare::nominal(rig, known).context("a rig without a contact")?;
         let [fine, _] = contact_trials(rig, origin, trials)?;
-        let fit = nominal_fit(&Data { trials: &fine, weights: flat_weights(&fine) }, &nominal);
+        let fit = nominal_fit(&Data::new(&fine), &nominal);
         contact.stiffness = fit.values[index::STIFFNESS];
         contact.damping = fit.values[index::DAMPING];
         contact.surface = fit.values[index::SURFACE];
@@ -87,7 +87,7 @@ fn scored(rig: &Rig, origin: &str, trial: &Recording) -> Result<Vec<f64>> {
     let (model, given) = law_of(&fine, &nominal);
     let end = beginning(&fine[0], model.bilateral);
     // The surface alone is placed, by the beginning alone.
-    let mut first = Data { trials: &fine, weights: flat_weights(&fine) };
+    let mut first = Data::new(&fine);
     first.weights[0][end..].fill(0.0);
     let [low, high] = model.scales.positions;
     let starts = STARTS.iter().filter(|_| !model.bilateral).map(|part| low + part * (high - low));

@@ -12,7 +12,9 @@ use crate::diagnose::linalg::{dot, energy};
 pub struct Data<'a> {
     /// Every trial.
     pub trials: &'a [ContactTrial],
-    /// One over the deviation that the sensors give each row of each trial, N or N m; zero where a row does not count.
+    /// Variance that sensors and the motion's uncertainty give each row of each trial, N^2 or (N m)^2.
+    pub noise: Vec<Vec<f64>>,
+    /// One over the deviation that is expected of each row; zero where a row does not count.
     pub weights: Vec<Vec<f64>>,
 }
 
@@ -36,6 +38,8 @@ impl Effort {
     pub const QUICK: Self = Self(4);
     /// To the end.
     pub const FULL: Self = Self(30);
+    /// From where a search ended, under weights that differ a little.
+    pub const AGAIN: Self = Self(3);
 }
 
 /// Part of the residual's energy below which a step no longer counts.
@@ -54,10 +58,36 @@ const LONGEST_FACTOR: f64 = 1.0;
 const LONGEST_STEP: f64 = 30.0;
 
 impl<'a> Data<'a> {
+    /// `trials` whose rows are worth what the force sensor alone leaves of them.
+    #[must_use]
+    pub fn new(trials: &'a [ContactTrial]) -> Self {
+        let noise: Vec<Vec<f64>> = trials.iter().map(|trial| vec![trial.force_variance; trial.len()]).collect();
+        let weights = trials.iter().zip(&noise).map(|(trial, noise)| {
+            let rows = trial.counts.iter().zip(noise);
+            rows.map(|(counts, variance)| if *counts { variance.sqrt().recip() } else { 0.0 }).collect()
+        });
+        Self { trials, weights: weights.collect(), noise }
+    }
+
     /// Rows that count.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.weights.iter().flatten().filter(|weight| **weight > 0.0).count()
+    }
+
+    /// Weighted squares that the sensors alone leave.
+    #[must_use]
+    pub fn expected(&self) -> f64 {
+        let rows = self.weights.iter().flatten().zip(self.noise.iter().flatten());
+        rows.filter(|(weight, _)| **weight > 0.0).map(|(weight, variance)| weight * weight * variance).sum()
+    }
+
+    /// Root mean square of what the sensors alone leave, N or N m.
+    #[must_use]
+    pub fn expected_noise(&self) -> f64 {
+        let rows = self.weights.iter().flatten().zip(self.noise.iter().flatten()).filter(|(weight, _)| **weight > 0.0);
+        let (sum, count) = rows.fold((0.0, 0usize), |(sum, count), (_, variance)| (sum + variance, count + 1));
+        (sum / count.max(1) as f64).sqrt()
     }
 
     /// Measured less predicted force of trial `trial`, N or N m.
@@ -175,33 +205,107 @@ impl<'a> Data<'a> {
         self.fit_holding(model, start, effort, &|_| false)
     }
 
-    /// The same with each row worth what the sensors and the position's uncertainty leave of it, under `fit`.
+    /// The same with each row worth what is expected of it under `fit`: to the force's variance come those of position, velocity and
+    /// acceleration, each by how much the force changes with it (effective variance: J. Orear, *Am. J. Phys.* 50, 1982), and one variance
+    /// for what the law itself leaves.
     #[must_use]
     pub fn weighed(&self, fit: &Fit) -> Self {
-        let weights = self.trials.iter().enumerate().map(|(number, trial)| {
-            let slope = stiffness_along(fit, trial, number);
-            let damping = fit.values[index::DAMPING];
-            let worth = |row: usize| {
-                let place = slope[row].powi(2) * trial.position_variance[row];
-                let speed = if slope[row] > 0.0 { damping.powi(2) * trial.velocity_variance[row] } else { 0.0 };
-                if trial.counts[row] { (trial.force_variance + place + speed).sqrt().recip() } else { 0.0 }
-            };
-            (0..trial.len()).map(worth).collect()
-        });
-        Self { trials: self.trials, weights: weights.collect() }
+        let noise: Vec<Vec<f64>> =
+            self.trials.par_iter().enumerate().map(|(number, trial)| noise_along(fit, trial, number)).collect();
+        let residual: Vec<Vec<f64>> =
+            (0..self.trials.len()).map(|trial| self.residual(&fit.model, &fit.values, trial)).collect();
+        let rows = noise.iter().flatten().zip(residual.iter().flatten()).filter(|(variance, _)| variance.is_finite());
+        let rows: Vec<(f64, f64)> = rows.map(|(variance, residual)| (*variance, residual * residual)).collect();
+        let misfit = law_variance(&rows);
+        let weight = |variance: &f64| if variance.is_finite() { (variance + misfit).sqrt().recip() } else { 0.0 };
+        let weights = noise.iter().map(|trial| trial.iter().map(weight).collect());
+        Self { trials: self.trials, weights: weights.collect(), noise }
+    }
+
+    /// `fit` under these weights, its search continued from where it ended.
+    #[must_use]
+    pub fn again(&self, fit: &Fit) -> Fit {
+        self.fit(&fit.model, &fit.values, Effort::AGAIN)
     }
 }
 
-/// Change of the force with position along `trial`: by how much an error of the position shows.
-fn stiffness_along(fit: &Fit, trial: &ContactTrial, number: usize) -> Vec<f64> {
+/// Variance that every row has beside `rows`' own, from these and the squares of their residuals: the one under which the weighted
+/// squares are as many as the rows; zero where they are no more without it (R. C. Paule, J. Mandel, *J. Res. NBS* 87, 1982).
+fn law_variance(rows: &[(f64, f64)]) -> f64 {
+    let excess =
+        |law: f64| rows.iter().map(|(variance, square)| square / (variance + law)).sum::<f64>() - rows.len() as f64;
+    if rows.is_empty() || excess(0.0) <= 0.0 {
+        return 0.0;
+    }
+    // The sum falls with the variance, and at the greatest square over a row it is below the rows' number.
+    let (mut low, mut high) = (0.0, rows.iter().map(|(_, square)| square).sum::<f64>());
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if excess(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Variance of each row of `trial` by the sensors, under `fit`; infinite where the row is no measurement of the law.
+fn noise_along(fit: &Fit, trial: &ContactTrial, number: usize) -> Vec<f64> {
+    let slopes = slopes_along(fit, trial, number);
+    let jump = jump_variance(fit, trial, number);
+    let of_row = |row: usize| {
+        let place = slopes[0][row].powi(2) * trial.position_variance[row];
+        let speed = slopes[1][row].powi(2) * trial.velocity_variance[row];
+        let change = slopes[2][row].powi(2) * trial.acceleration_variance[row];
+        let sensors = trial.force_variance + place + speed + change;
+        // Where a jump hides all else, the row measures when it was, and not the law.
+        if trial.counts[row] && jump[row] < sensors { sensors + jump[row] } else { f64::INFINITY }
+    };
+    (0..trial.len()).map(of_row).collect()
+}
+
+/// Change of the force with position, velocity and acceleration along `trial`: by how much an error of each shows.
+///
+/// The position is moved as a whole. Velocity and acceleration are moved to and fro from row to row, as their errors are: a memory takes
+/// up their mean, which is none.
+fn slopes_along(fit: &Fit, trial: &ContactTrial, number: usize) -> [Vec<f64>; 3] {
+    let predicted = |trial: &ContactTrial| fit.model.predicted(&fit.values, trial, number);
+    let half = |after: Vec<f64>, before: Vec<f64>, step: f64| -> Vec<f64> {
+        after.iter().zip(&before).map(|(after, before)| ((after - before) / (2.0 * step)).abs()).collect()
+    };
     let step = 1e-3 * fit.model.scales.depth;
-    let at = |moved: f64| {
+    let place = |moved: f64| {
         let mut values = fit.values.clone();
         values[index::SURFACE] += moved;
         fit.model.predicted(&values, trial, number)
     };
-    let (before, after) = (at(-step), at(step));
-    before.iter().zip(&after).map(|(before, after)| ((after - before) / (2.0 * step)).abs()).collect()
+    let to_and_fro = |column: &[f64], step: f64| -> Vec<f64> {
+        column.iter().enumerate().map(|(row, value)| value + if row % 2 == 0 { step } else { -step }).collect()
+    };
+    let size = |column: &[f64]| 1e-3 * (energy(column) / column.len().max(1) as f64).sqrt().max(f64::MIN_POSITIVE);
+    let (speed, change) = (size(&trial.velocity), size(&trial.acceleration));
+    let fast = |step: f64| ContactTrial { velocity: to_and_fro(&trial.velocity, step), ..trial.clone() };
+    let bent = |step: f64| ContactTrial { acceleration: to_and_fro(&trial.acceleration, step), ..trial.clone() };
+    [
+        half(place(step), place(-step), step),
+        half(predicted(&fast(speed)), predicted(&fast(-speed)), speed),
+        half(predicted(&bent(change)), predicted(&bent(-change)), change),
+    ]
+}
+
+/// Variance of a row beside a jump of the force, as a damper makes at the surface. A reading that lies a part `f` of a row beside the
+/// motion's is that before the jump or that behind it, where a straight line gives `f` of the jump: it is wrong by f (1 - f) of its
+/// square in the mean. And each reading is a mean over some part of its row, by a twelfth more. A jump is told from a bend by second
+/// differences of either sign on its two sides; the negative product of neighbours is its square.
+fn jump_variance(fit: &Fit, trial: &ContactTrial, number: usize) -> Vec<f64> {
+    let part = (fit.values[index::TIMING].abs() / trial.step_s).min(0.5);
+    let force = fit.model.predicted(&fit.values, trial, number);
+    let bend: Vec<f64> = force.windows(3).map(|rows| rows[2] - 2.0 * rows[1] + rows[0]).collect();
+    let mut variance = vec![0.0; force.len()];
+    for (before, pair) in bend.windows(2).enumerate() {
+        let square = (part * (1.0 - part) + 1.0 / 12.0) * (-pair[0] * pair[1]).max(0.0);
+        for row in before + 1..before + 3 {
+            variance[row] += square;
+        }
+    }
+    variance
 }
 
 fn prior_energy(ranges: &[Range], values: &[f64]) -> f64 {
@@ -277,6 +381,8 @@ pub struct Rest {
     pub rows: Vec<f64>,
     /// Mean square of it, no less than what the sensors leave.
     pub power: f64,
+    /// Its squares over those that the sensors leave, no less than one.
+    pub over_sensors: f64,
     /// Rows that tell no more than one: integrated autocorrelation time, at least one.
     pub correlated_rows: f64,
 }
@@ -286,11 +392,12 @@ impl Rest {
     #[must_use]
     pub fn of(data: &Data<'_>, fit: &Fit) -> Self {
         let rows = data.weighted_residual(&fit.model, &fit.values);
-        let power = energy(&rows) / data.rows().max(1) as f64;
+        let (squares, expected) = (energy(&rows), data.expected().max(f64::MIN_POSITIVE));
         let starts = data.starts();
         let trials = starts.iter().zip(data.trials).map(|(start, trial)| &rows[*start..start + trial.len()]);
         let correlated_rows = integrated_autocorrelation(&trials.collect::<Vec<_>>());
-        Self { power: power.max(1.0), correlated_rows, rows }
+        let power = squares.max(expected) / data.rows().max(1) as f64;
+        Self { power, over_sensors: (squares / expected).max(1.0), correlated_rows, rows }
     }
 }
 

@@ -225,6 +225,7 @@ impl ContactModel {
             Limit::ReachedRange => low = low.max(0.15 * scales.force),
             Limit::RepeatedCycles => low = low.max(1.8 / scales.duration_s),
             Limit::RepeatedPitch => (low, high) = (low.max(2.0 * scales.resolution), high.min(scales.travel() / 1.4)),
+            Limit::ResolvableLength => low = low.max(scales.resolution),
             Limit::BoundsOnly | Limit::ResonanceInBand | Limit::MinSpeed => {}
         }
         let by_factors = parameter.low >= 0.0 && parameter.high.is_infinite() && value > 0.0;

@@ -17,6 +17,23 @@ pub struct Motion {
     pub position_variance: Vec<f64>,
     /// Variance of the velocity.
     pub velocity_variance: Vec<f64>,
+    /// Variance of the acceleration.
+    pub acceleration_variance: Vec<f64>,
+}
+
+impl Motion {
+    /// Of `count` rows, all at rest and known.
+    fn zeros(count: usize) -> Self {
+        let zeros = || vec![0.0; count];
+        Self {
+            position: zeros(),
+            velocity: zeros(),
+            acceleration: zeros(),
+            position_variance: zeros(),
+            velocity_variance: zeros(),
+            acceleration_variance: zeros(),
+        }
+    }
 }
 
 type Vector = [f64; 3];
@@ -26,14 +43,7 @@ type Matrix = [[f64; 3]; 3];
 #[must_use]
 pub fn smoothed(time: &[f64], position: &[f64], variance: f64) -> Motion {
     let Some(rows) = Rows::of(time, position, variance) else {
-        let zeros = vec![0.0; position.len()];
-        return Motion {
-            position: position.to_vec(),
-            velocity: zeros.clone(),
-            acceleration: zeros.clone(),
-            position_variance: zeros.clone(),
-            velocity_variance: zeros,
-        };
+        return Motion { position: position.to_vec(), ..Motion::zeros(position.len()) };
     };
     let density = rows.most_likely_density();
     rows.smooth(density)
@@ -135,13 +145,7 @@ impl<'a> Rows<'a> {
             kept.push(Kept { state, covariance, innovation, variance });
             correct(&mut state, &mut covariance, innovation, variance);
         }
-        let mut motion = Motion {
-            position: vec![0.0; count],
-            velocity: vec![0.0; count],
-            acceleration: vec![0.0; count],
-            position_variance: vec![0.0; count],
-            velocity_variance: vec![0.0; count],
-        };
+        let mut motion = Motion::zeros(count);
         let (scale, rate) = (self.deviation, self.deviation / self.step);
         let (mut adjoint, mut information): (Vector, Matrix) = ([0.0; 3], [[0.0; 3]; 3]);
         for row in (0..count).rev() {
@@ -158,6 +162,7 @@ impl<'a> Rows<'a> {
             motion.acceleration[row] = rate / self.step * (state[2] - moved[2]);
             motion.position_variance[row] = scale * scale * spread(0);
             motion.velocity_variance[row] = rate * rate * spread(1);
+            motion.acceleration_variance[row] = (rate / self.step).powi(2) * spread(2);
             let (step, _) = self.row(row);
             back_over(&mut adjoint, &mut information, step);
         }
@@ -238,7 +243,7 @@ mod tests {
 
     /// A sine under white noise, rows jittered by a third of their period: the errors are as large as the variances say.
     #[test]
-    fn errors_of_position_and_velocity_are_those_of_the_variances() {
+    fn errors_of_the_motion_are_those_of_the_variances() {
         let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(3);
         let normal = Normal::new(0.0, 2e-5).unwrap();
         let jitter = Normal::new(0.0, 1e-4).unwrap();
@@ -248,15 +253,18 @@ mod tests {
         let position: Vec<f64> =
             time.iter().map(|time| 0.3 + size * (pulse * time).sin() + normal.sample(&mut random)).collect();
         let motion = smoothed(&time, &position, 4e-10);
-        let (mut place, mut speed) = (0.0, 0.0);
+        let (mut place, mut speed, mut change) = (0.0, 0.0, 0.0);
         for (row, time) in time.iter().enumerate().take(3900).skip(100) {
             let truth = (0.3 + size * (pulse * time).sin(), size * pulse * (pulse * time).cos());
             place += (motion.position[row] - truth.0).powi(2) / motion.position_variance[row];
             speed += (motion.velocity[row] - truth.1).powi(2) / motion.velocity_variance[row];
+            let turned = -size * pulse * pulse * (pulse * time).sin();
+            change += (motion.acceleration[row] - turned).powi(2) / motion.acceleration_variance[row];
             assert!(motion.position_variance[row] < 4e-10);
         }
-        // A sine is smoother than what is assumed, so that both come out below one; errors are alike over some ten rows.
-        let ratios = [place / 3800.0, speed / 3800.0];
-        assert!(ratios.iter().all(|ratio| (0.2..1.6).contains(ratio)), "{ratios:?}");
+        // A sine is smoother than what is assumed, the more so the higher the derivative, so that all come out below one; errors are alike
+        // over some ten rows.
+        let ratios = [place / 3800.0, speed / 3800.0, change / 3800.0];
+        assert!(ratios.iter().all(|ratio| (0.1..1.6).contains(ratio)), "{ratios:?}");
     }
 }

@@ -70,6 +70,8 @@ pub use crate::diagnose::drive::outcome::Finding;
 pub struct Outcome {
     /// The trials, as they were looked at.
     pub trials: Vec<ContactTrial>,
+    /// Variance of each row by sensors and the motion's uncertainty; infinite where a row is no measurement of the law.
+    pub noise: Vec<Vec<f64>>,
     /// What each row is worth: one over its expected deviation.
     pub weights: Vec<Vec<f64>>,
     /// How it stands.
@@ -152,27 +154,19 @@ pub fn identify(
     }
     let (_, start) = law_of(&trials, rig);
     say("the contact: nominal values");
-    let first = nominal_fit(&Data { trials: &trials, weights: flat_weights(&trials) }, rig);
-    let data = Data { trials: &trials, weights: flat_weights(&trials) }.weighed(&first);
+    let first = nominal_fit(&Data::new(&trials), rig);
+    let data = Data::new(&trials).weighed(&first);
     let nominal = data.fit(&first.model, &first.values, Effort::FULL);
-    let coarse = Data { trials: coarse, weights: flat_weights(coarse) }.weighed(&nominal);
+    let coarse = Data::new(coarse).weighed(&nominal);
     let mut search = Search { data, coarse, nominal };
     let chosen = search.run(say);
+    let chosen = search.weighed_anew(chosen);
     say("the contact: what is left");
     let mut outcome = judged(&search, chosen, &start);
     outcome.weights.clone_from(&search.data.weights);
+    outcome.noise.clone_from(&search.data.noise);
     outcome.trials.clone_from(&trials);
     Some(outcome)
-}
-
-/// One over the deviation of the force sensor alone, for every row that counts.
-#[must_use]
-pub fn flat_weights(trials: &[ContactTrial]) -> Vec<Vec<f64>> {
-    let worth = |trial: &ContactTrial| {
-        let weight = trial.force_variance.sqrt().recip();
-        trial.counts.iter().map(|counts| if *counts { weight } else { 0.0 }).collect()
-    };
-    trials.iter().map(worth).collect()
 }
 
 /// The law that `rig` states, with the values that it gives.
@@ -242,6 +236,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let given_residual = columns(&given);
     Outcome {
         trials: Vec::new(),
+        noise: Vec::new(),
         weights: Vec::new(),
         finding: finding(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]),
         nominal: search.nominal.clone(),
@@ -251,7 +246,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         named,
         singles: singles(search, &chosen),
         residuals: [given_residual, refitted.residual, improved.residual],
-        expected_noise: expected_noise(data),
+        expected_noise: data.expected_noise(),
         chosen: fit,
     }
 }
@@ -268,16 +263,10 @@ fn as_given(search: &Search<'_>, start: &[f64]) -> Fit {
     given
 }
 
-fn expected_noise(data: &Data<'_>) -> f64 {
-    let rows = data.weights.iter().flatten().filter(|weight| **weight > 0.0);
-    let (sum, count) = rows.fold((0.0, 0usize), |(sum, count), weight| (sum + weight.powi(-2), count + 1));
-    (sum / count.max(1) as f64).sqrt()
-}
-
 /// The effects that unseen rows confirm, with what each takes of them.
 fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
     let data = &search.data;
-    let expected = data.rows() as f64;
+    let expected = data.expected();
     loop {
         let held = folds.held_out(data, &fit);
         let first = search.nominal.model.terms.len();
@@ -316,7 +305,7 @@ fn likelihood_ratio(search: &Search<'_>, more: &Fit, less: &Fit) -> f64 {
 }
 
 fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
-    let expected = search.coarse.rows() as f64;
+    let expected = search.coarse.expected();
     let before = search.coarse.fit(&search.nominal.model, &search.nominal.values, Effort::QUICK);
     let rest = Rest::of(&search.coarse, &before);
     let mut all: Vec<Single> = Vec::new();
@@ -353,7 +342,7 @@ fn alternatives(
     if fit.model.terms.len() == first {
         return Vec::new();
     }
-    let expected = search.data.rows() as f64;
+    let expected = search.data.expected();
     let is_open = |other: &&Fit| {
         let worth = search.worth(fit, other);
         other.model.names(first) != fit.model.names(first)
@@ -372,20 +361,20 @@ fn alternatives(
 
 /// Whether named effects leave something notable and take less of the mismatch than they leave.
 fn takes_too_little(search: &Search<'_>, fit: &Fit, named: &[NamedTerm]) -> bool {
-    let expected = search.data.rows() as f64;
+    let expected = search.data.expected();
     let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
     let left = (fit.energy - expected).max(0.0);
-    !named.is_empty() && Rest::of(&search.data, fit).power > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
+    !named.is_empty() && Rest::of(&search.data, fit).over_sensors > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
 }
 
 fn finding(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Finding {
     let data = &search.data;
-    let expected = data.rows() as f64;
+    let expected = data.expected();
     let rest = Rest::of(data, fit);
     let left = (fit.energy - expected).max(0.0);
     let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
-    let is_notable =
-        rest.power > NOTABLE_POWER && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE);
+    let is_notable = rest.over_sensors > NOTABLE_POWER
+        && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE);
     if named.is_empty() {
         let refitted = rms(data, &held[0].residual);
         return if is_notable {
@@ -397,7 +386,7 @@ fn finding(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held
         };
     }
     let is_told = 1.0 - left / all > TOLD_SHARE;
-    if is_notable && (!is_told || rest.power > MOST_LEFT * search.nominal.energy / expected) {
+    if is_notable && (!is_told || rest.over_sensors > MOST_LEFT * search.nominal.energy / expected) {
         Finding::PartlyExplained
     } else {
         Finding::Explained
@@ -429,7 +418,7 @@ mod tests {
             assert!(low - slack < truth && truth < high + slack, "{at}: {value} {low} {high}");
         }
         // 6000 rows tell their power to 1.8 %; the encoder adds 0.6 mN.
-        let data = Data { trials: &outcome.trials, weights: outcome.weights.clone() };
+        let data = Data { trials: &outcome.trials, noise: outcome.noise.clone(), weights: outcome.weights.clone() };
         let left = rms(&data, &outcome.residuals[2]);
         assert!((left / FORCE_NOISE - 1.0).abs() < 0.05 && (outcome.expected_noise / FORCE_NOISE - 1.0).abs() < 0.05);
     }

@@ -50,7 +50,7 @@ pub struct Worth {
 }
 
 /// Sets that each round grows from.
-const BEAM: usize = 2;
+const BEAM: usize = 4;
 
 /// Promises of a round that are fitted.
 const TRIED: usize = 14;
@@ -67,22 +67,20 @@ const MOST_TERMS: usize = 4;
 /// Other surfaces that a law's search starts from where much is missing, of the depth.
 const SURFACES: [f64; 3] = [-0.3, 0.15, 0.4];
 
+/// Squares a row, over the sensors' own, from which much is missing.
+const FAR_ENERGY: f64 = 4.0;
+
 /// Blocks that likelihoods are compared over, and integrated autocorrelation times that a block is long at the least.
 const BLOCKS: usize = 40;
 const BLOCK_TIMES: f64 = 3.0;
 
 impl Search<'_> {
-    /// Sum of squares that the sensors alone leave.
-    fn expected(&self) -> f64 {
-        self.data.rows() as f64
-    }
-
     /// What `more` has over `less`.
     #[must_use]
     pub fn worth(&self, more: &Fit, less: &Fit) -> Worth {
         let (rest, before) = (Rest::of(&self.data, more), Rest::of(&self.data, less));
         let taken = less.energy - more.energy;
-        let above = |energy: f64| (energy - self.expected()).max(0.0);
+        let above = |energy: f64| (energy - self.data.expected()).max(0.0);
         let scale = 0.5 / (rest.power * rest.correlated_rows);
         let logs = |rows: &[f64]| -> Vec<f64> { rows.iter().map(|row| -scale * row * row).collect() };
         let block = (self.data.rows() / BLOCKS).max((BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
@@ -92,7 +90,7 @@ impl Search<'_> {
             part_of_all: (taken.max(0.0) / above(self.nominal.energy).max(taken.max(f64::MIN_POSITIVE))).sqrt(),
             part_of_force: self.part_of_force(taken),
             vuong: vuong(&logs(&rest.rows), &logs(&before.rows), block),
-            left: rest.power,
+            left: rest.over_sensors,
             price: self.price_of_value(&rest),
         }
     }
@@ -164,21 +162,23 @@ impl Search<'_> {
             let top = grown.iter().find(|fit| self.is_worth(fit, &best));
             match top {
                 Some(top) => {
-                    best = top.clone();
+                    best = self.weigh_by(top.clone());
                     waiting = 0;
                 }
                 // Two effects can be worth it where neither is alone.
                 None => waiting += 1,
             }
-            if waiting > 1 || best.energy < 1.02 * self.expected() {
+            if waiting > 1 || best.energy < 1.02 * self.data.expected() {
                 break;
             }
-            beam = grown.into_iter().filter(|fit| fit.model.terms.len() <= MOST_TERMS).take(BEAM).collect();
+            let grown = grown.iter().filter(|fit| fit.model.terms.len() <= MOST_TERMS).take(BEAM);
+            beam = grown.map(|fit| if waiting == 0 { self.data.again(fit) } else { fit.clone() }).collect();
             if waiting == 0 && beam.iter().all(|fit| fit.model != best.model) {
                 beam.truncate(BEAM - 1);
                 beam.push(best.clone());
             }
         }
+        sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         say("the contact: without each effect");
         let fit = self.pruned(best);
         let fit = self.exchanged(fit, say);
@@ -186,15 +186,31 @@ impl Search<'_> {
         Chosen { fit, singles, sets }
     }
 
+    /// Takes each row for what `best` makes of the motion's uncertainty, and for what it leaves: an inertia shows errors of the
+    /// acceleration, a stiffer law more of the position's, and the better a law the more its finest rows are worth. Returns `best` under
+    /// these weights.
+    fn weigh_by(&mut self, best: Fit) -> Fit {
+        self.data = self.data.weighed(&best);
+        self.coarse = self.coarse.weighed(&best);
+        self.nominal = self.data.again(&self.nominal);
+        self.data.again(&best)
+    }
+
+    /// What was chosen, under the weights of its own.
+    #[must_use]
+    pub fn weighed_anew(&mut self, chosen: Chosen) -> Chosen {
+        let fit = self.weigh_by(chosen.fit);
+        let sets = chosen.sets.par_iter().map(|fit| self.data.again(fit)).collect();
+        Chosen { fit: self.pruned(fit), sets, ..chosen }
+    }
+
     /// `base` with each promising effect, and with what each trial may have for itself, the best first.
     fn grown(&self, base: &Fit) -> Vec<Fit> {
         let data = &self.coarse;
         let model = &base.model;
-        let stiffness = base.values[index::STIFFNESS];
-        let excitation = model.scales.excitation(data.trials, stiffness, base.values[index::SURFACE], model.bilateral);
-        let promises = Projection::of(data, base).promises(&excitation);
+        let promises = self.promises(base);
         let mut tried: Vec<Fit> =
-            promises.par_iter().take(TRIED).map(|promise| self.with_effect(base, promise)).collect();
+            promises.par_iter().take(TRIED).map(|(promise, base)| self.with_effect(promise, base)).collect();
         tried.par_extend(own_values(model).into_par_iter().map(|own| {
             let model = ContactModel { own, ..model.clone() };
             let start = moved_values(base, &model);
@@ -204,22 +220,42 @@ impl Search<'_> {
         tried
     }
 
-    /// `base` with an effect, from where it stands and from other surfaces: what is missing bends the nominal values.
-    fn with_effect(&self, base: &Fit, promise: &Promise) -> Fit {
-        let model = base.model.with(promise.term);
-        let start: Vec<f64> = base.values.iter().chain(&promise.values).copied().collect();
-        let mut best = self.coarse.fit(&model, &start, Effort::QUICK);
-        if !model.bilateral && base.energy > 4.0 * self.coarse.rows() as f64 {
-            for part in SURFACES {
-                let mut moved = start.clone();
-                moved[index::SURFACE] += part * model.scales.depth;
-                let fit = self.coarse.fit(&model, &moved, Effort::QUICK);
-                if fit.energy < best.energy {
-                    best = fit;
+    /// What each effect promises beside `base`, the best first: from where `base` stands, and where much is missing from other surfaces,
+    /// because what is missing bends the nominal values, and what a motion can show depends on where the contact begins.
+    fn promises(&self, base: &Fit) -> Vec<(Promise, Fit)> {
+        let mut bases = vec![base.clone()];
+        if !base.model.bilateral && base.energy > FAR_ENERGY * self.coarse.expected() {
+            let moved = SURFACES.par_iter().map(|part| {
+                let mut values = base.values.clone();
+                values[index::SURFACE] += part * base.model.scales.depth;
+                self.coarse.fit_holding(&base.model, &values, Effort::QUICK, &|at| at == index::SURFACE)
+            });
+            bases.par_extend(moved);
+        }
+        let mut best: Vec<(Promise, Fit)> = Vec::new();
+        for fit in bases {
+            let lost = fit.energy - base.energy;
+            let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
+            let model = &fit.model;
+            let excitation = model.scales.excitation(self.coarse.trials, stiffness, surface, model.bilateral);
+            for mut promise in Projection::of(&self.coarse, &fit).promises(&excitation) {
+                promise.gain -= lost;
+                match best.iter_mut().find(|(other, _)| other.term.is(&promise.term)) {
+                    Some((other, _)) if other.gain >= promise.gain => {}
+                    Some(other) => *other = (promise, fit.clone()),
+                    None => best.push((promise, fit.clone())),
                 }
             }
         }
+        best.sort_by(|(a, _), (b, _)| b.gain.total_cmp(&a.gain));
         best
+    }
+
+    /// `base` with an effect.
+    fn with_effect(&self, promise: &Promise, base: &Fit) -> Fit {
+        let model = base.model.with(promise.term);
+        let start: Vec<f64> = base.values.iter().chain(&promise.values).copied().collect();
+        self.coarse.fit(&model, &start, Effort::QUICK)
     }
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do

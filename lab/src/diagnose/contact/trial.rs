@@ -1,8 +1,8 @@
 //! A recording as the contact's model sees it: the smoothed motion of the tool and the force beside it.
 
-use super::motion;
+use super::motion::{self, Motion};
 use crate::recording::Recording;
-use crate::sensors::Figures;
+use crate::sensors::{Channel, DITHER_FRACTION, Figures};
 
 /// One trial. All columns are of equal length.
 #[derive(Debug, Clone)]
@@ -27,6 +27,8 @@ pub struct ContactTrial {
     pub position_variance: Vec<f64>,
     /// Variance of the velocity.
     pub velocity_variance: Vec<f64>,
+    /// Variance of the acceleration.
+    pub acceleration_variance: Vec<f64>,
     /// Force reading, N or N m.
     pub force: Vec<f64>,
     /// Variance of a row of it by the sensor alone.
@@ -52,7 +54,8 @@ impl ContactTrial {
         let since: Vec<f64> = recording.time.iter().map(|time| time - origin).collect();
         let dropouts_s = counts.iter().zip(&since).filter(|(counts, _)| !**counts).map(|(_, time)| *time).collect();
         let noise = figures.position.noise.max(figures.position.resolution / 12f64.sqrt());
-        let smooth = motion::smoothed(&since, &position, noise * noise);
+        let mut smooth = motion::smoothed(&since, &position, noise * noise);
+        stuck_rounding(&mut smooth, figures.position, recording.period());
         let every = every.max(1);
         let mean = |values: &[f64]| -> Vec<f64> {
             values.chunks_exact(every).map(|rows| rows.iter().sum::<f64>() / every as f64).collect()
@@ -61,7 +64,7 @@ impl ContactTrial {
         let force_variance = channel.noise.max(f64::MIN_POSITIVE).powi(2) / every as f64;
         // Rounding that noise does not shake is no less in a mean.
         let rounding = channel.resolution / 12f64.sqrt();
-        let coarse = channel.noise < 0.5 * channel.resolution;
+        let coarse = channel.noise < DITHER_FRACTION * channel.resolution;
         Some(Self {
             name: recording.name.clone(),
             origin_s: origin,
@@ -73,6 +76,7 @@ impl ContactTrial {
             acceleration: mean(&smooth.acceleration),
             position_variance: mean(&smooth.position_variance),
             velocity_variance: mean(&smooth.velocity_variance),
+            acceleration_variance: mean(&smooth.acceleration_variance),
             force: mean(&force),
             force_variance: if coarse { force_variance.max(rounding * rounding) } else { force_variance },
             counts: counts.chunks_exact(every).map(|rows| rows.iter().all(|counts| *counts)).collect(),
@@ -97,6 +101,23 @@ impl ContactTrial {
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.time.last().unwrap_or(&0.0) - self.time.first().unwrap_or(&0.0)
+    }
+}
+
+/// Adds to the position's variance what smoothing cannot take of an encoder's rounding: where neither noise nor motion carries the
+/// reading over a step, neighbouring rows are wrong by the same part of it (B. Widrow, I. Kollár, *Quantization Noise*, 2008, ch. 5).
+fn stuck_rounding(motion: &mut Motion, encoder: Channel, step_s: f64) {
+    let rounding = encoder.resolution * encoder.resolution / 12.0;
+    let shake = (encoder.noise * encoder.noise - rounding).max(0.0);
+    if rounding == 0.0 || shake.sqrt() > DITHER_FRACTION * encoder.resolution {
+        return;
+    }
+    let all = (shake + rounding).max(f64::MIN_POSITIVE);
+    for (variance, velocity) in motion.position_variance.iter_mut().zip(&motion.velocity) {
+        // A mean over 1 / `part` rows holds as many independent errors as steps are crossed in their time.
+        let part = *variance / all;
+        let rows_a_step = (encoder.resolution / (velocity.abs() * step_s).max(f64::MIN_POSITIVE)).max(1.0);
+        *variance = part * shake + (part * rows_a_step).min(1.0) * rounding;
     }
 }
 

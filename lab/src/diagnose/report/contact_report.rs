@@ -80,7 +80,7 @@ fn quality(outcome: &Outcome, coordinate: Coordinate) -> FitQuality {
 /// The rows of `outcome` with their worth.
 #[must_use]
 pub fn data(outcome: &Outcome) -> Data<'_> {
-    Data { trials: &outcome.trials, weights: outcome.weights.clone() }
+    Data { trials: &outcome.trials, noise: outcome.noise.clone(), weights: outcome.weights.clone() }
 }
 
 /// The rig `given` with what was found of the contact: refitted values and every effect of the law.

@@ -5,6 +5,9 @@ use crate::diagnose::phase;
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
+/// Residual over the sensors' own that is still called theirs: their noise is known to some 15 %.
+const MOST_OVER_NOISE: f64 = 1.15;
+
 /// One sentence or two.
 #[must_use]
 pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
@@ -43,8 +46,10 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 answer.physics.iter().filter(|p| p.name != "unknown").map(|p| p.name.replace('_', " ")).collect();
             let rest = if answer.verdict == Verdict::PartlyExplained {
                 format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")
-            } else {
+            } else if fit.improved < MOST_OVER_NOISE * fit.noise_floor {
                 format!(" That is what the sensors leave ({expected_noise}).")
+            } else {
+                format!(" The sensors alone would leave {expected_noise}.")
             };
             let rivals = if answer.alternatives.is_empty() {
                 String::new()
@@ -52,7 +57,7 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 let all: Vec<String> = answer
                     .alternatives
                     .iter()
-                    .map(|r| r.physics.first().map_or(String::new(), |n| n.replace('_', " ")))
+                    .map(|rival| listed(&rival.physics.iter().map(|name| name.replace('_', " ")).collect::<Vec<_>>()))
                     .collect();
                 format!(" These data cannot tell it from {}.", all.join(" or "))
             };

@@ -2,7 +2,8 @@
 
 use crate::effects::contact_state::{gate, ramp};
 use crate::effects::{
-    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
+    geometric,
 };
 use crate::rig::Word;
 
@@ -18,7 +19,8 @@ static SPEC: EffectSpec = EffectSpec {
     forms: &[Form {
         name: "play",
         equation: "the tip follows the sensor only beyond +-play/2; the contact law takes the tip's depth and rate",
-        parameters: &[Parameter::new("play", Word::new("m", "rad"), "whole width of the play", 0.0, f64::INFINITY)],
+        parameters: &[Parameter::new("play", Word::new("m", "rad"), "whole width of the play", 0.0, f64::INFINITY)
+            .within(Limit::ResolvableLength)],
     }],
     excited_by: "small and large reversals in contact",
     resembles: &["hysteresis", "plastic_set"],
