@@ -17,6 +17,10 @@ const MAX_ROWS: usize = 20_000;
 /// Span over which positions are smoothed before they are differentiated, s.
 const SMOOTHING_S: f64 = 0.015;
 
+/// Angle that a loop may swing from one row to the next, and part of its speed that it may lose: a sampled loop needs less to be stable
+/// with a margin (G. F. Franklin, J. D. Powell, M. Workman, *Digital Control*, 1998, ch. 7: twenty rows a period and more).
+const QUICKEST_PART: f64 = 0.3;
+
 /// Samples a second of a rig of which no recording is there.
 const DEFAULT_RATE_HZ: f64 = 1000.0;
 
@@ -68,7 +72,12 @@ impl LoopModel {
         let columns: [&[f64]; 4] = [&error, &error_rate, &opposing(&acceleration), &opposing(&velocity)];
         let fitted = least_squares(&columns, &smoothed(trial.force.as_ref()?, width))?;
         let drive = Drive { inertia: fitted[2], viscous: fitted[3].max(0.0), encoder: None };
-        (fitted[0] > 0.0 && fitted[2] > 0.0).then(|| Self { drive, control: control(fitted[0], fitted[1]), rate_hz })
+        // A tool that is led shows no loop: what is fitted to its rounding swings within some rows, and no sampled loop does.
+        let is_shown = fitted[0] > 0.0
+            && fitted[2] > 0.0
+            && fitted[0] < fitted[2] * (QUICKEST_PART * rate_hz).powi(2)
+            && fitted[1] < fitted[2] * QUICKEST_PART * rate_hz;
+        is_shown.then(|| Self { drive, control: control(fitted[0], fitted[1]), rate_hz })
     }
 
     /// A loop of the usual bandwidth.
