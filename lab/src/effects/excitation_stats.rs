@@ -39,6 +39,8 @@ pub struct ExcitationStats {
     pub way_back: f64,
     /// Share of the time between the first and the last moment without contact.
     pub free_span: f64,
+    /// Share of a trial in the longest stretch without a free moment, of all trials.
+    pub longest_contact: f64,
     /// Stiffness of the rig file.
     pub given_stiffness: f64,
     /// Inertia of the rig file.

@@ -188,6 +188,7 @@ fn excitation_stats(rig: &Rig, trials: &[Recording]) -> ExcitationStats {
         releases: 3,
         way_back: 1.0,
         free_span: 0.5,
+        longest_contact: 0.2,
         given_stiffness: contact.map_or(0.0, |contact| contact.stiffness),
         given_inertia: rig.drive.map_or(0.0, |drive| drive.inertia),
         has_force: trials.iter().any(|trial| trial.force.is_some()),

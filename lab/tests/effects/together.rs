@@ -26,6 +26,7 @@ pub fn scene() -> ExcitationStats {
         releases: 2,
         way_back: 1.0,
         free_span: 0.4,
+        longest_contact: 0.2,
         given_inertia: 0.8,
         given_stiffness: 300.0,
         has_force: true,

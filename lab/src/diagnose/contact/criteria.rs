@@ -19,7 +19,8 @@ pub const FAR_SHARES: [f64; 2] = [0.33, 0.25];
 /// Part of the force's deviation below which nothing is told as missing, whatever its significance: no contact is known that well.
 pub const LEAST_PART_OF_FORCE: f64 = 0.002;
 
-/// Vuong's statistic: 95 % of one side. What shows on a few occasions alone, such as a release, cannot reach more than their root.
+/// Vuong's statistic: 95 % of one side. What shows on a few occasions alone, such as a release, cannot reach more than their root; it is
+/// not asked of what takes [`TOLD_SHARE`] of a mismatch far above the noise, for which nothing else is there.
 pub const LEAST_VUONG: f64 = 1.6;
 
 /// Share of the held-out power above the noise that a named effect has to take beside the others: half of what the search asks on its

@@ -20,7 +20,7 @@ pub struct HeldOut {
 }
 
 /// Blocks of a single trial.
-const BLOCKS: usize = 10;
+const BLOCKS: usize = 40;
 
 /// Steps of the search on a half, from the values of the whole.
 const STEPS: Effort = Effort(6);

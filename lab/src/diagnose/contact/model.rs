@@ -222,7 +222,9 @@ impl ContactModel {
         let (mut low, mut high) = (parameter.low, parameter.high);
         match parameter.limit {
             Limit::ResolvableTime => low = low.max(2.0 * scales.step_s),
-            Limit::ReachedRange => low = low.max(0.15 * scales.force),
+            Limit::ReachedRange => {
+                low = low.max(0.15 * scales.force).max(scales.reached_force - self.force_zero.abs());
+            }
             Limit::RepeatedCycles => low = low.max(1.8 / scales.duration_s),
             Limit::RepeatedPitch => (low, high) = (low.max(2.0 * scales.resolution), high.min(scales.travel() / 1.4)),
             Limit::ResolvableLength => low = low.max(scales.resolution),

@@ -12,6 +12,8 @@ pub struct Scales {
     pub speed: f64,
     /// Range of the force.
     pub force: f64,
+    /// Greatest reading of the force either way, less four deviations of its noise: what no range of the sensor lies below.
+    pub reached_force: f64,
     /// Least and greatest position.
     pub positions: [f64; 2],
     /// Longest trial, s.
@@ -67,6 +69,7 @@ impl Scales {
             depth: depth.clamp(1e-2 * travel, 2.0 * travel.max(f64::MIN_POSITIVE)),
             speed: if speed > 0.0 { speed } else { travel / duration_s },
             force: (forces[1] - forces[0]).max(f64::MIN_POSITIVE),
+            reached_force: trials.iter().map(reached_force).fold(0.0, f64::max),
             positions,
             duration_s,
             step_s: trials.first().map_or(1.0, |trial| trial.step_s),
@@ -110,6 +113,7 @@ impl Scales {
             releases: all.iter().map(|passes| passes.releases).sum(),
             way_back: all.iter().map(|passes| passes.way_back).fold(0.0, f64::max),
             free_span: all.iter().map(|passes| passes.free_span).fold(0.0, f64::max),
+            longest_contact: all.iter().map(|passes| passes.longest_contact).fold(0.0, f64::max),
             given_stiffness: self.given_stiffness,
             given_inertia: 0.0,
             has_force: true,
@@ -118,6 +122,11 @@ impl Scales {
             is_bilateral: bilateral,
         }
     }
+}
+
+fn reached_force(trial: &ContactTrial) -> f64 {
+    let greatest = trial.force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+    greatest - 4.0 * trial.force_variance.sqrt()
 }
 
 /// How a trial went in and out.
@@ -130,6 +139,8 @@ struct Passes {
     way_back: f64,
     /// Share of the rows from the first without contact to the last.
     free_span: f64,
+    /// Share of the rows in the longest stretch without a free moment.
+    longest_contact: f64,
 }
 
 impl Passes {
@@ -159,12 +170,14 @@ impl Passes {
         let free = |position: &f64| !bilateral && *position <= surface;
         let (first, last) = (trial.position.iter().position(free), trial.position.iter().rposition(free));
         let free_rows = first.zip(last).map_or(0, |(first, last)| last - first);
+        let longest = trial.position.split(free).map(<[f64]>::len).max().unwrap_or(0);
         let span = deepest - shallowest;
         Self {
             visits,
             releases,
             way_back: if span > 0.0 { back / span } else { 0.0 },
             free_span: free_rows as f64 / trial.len().max(1) as f64,
+            longest_contact: longest as f64 / trial.len().max(1) as f64,
         }
     }
 }

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::criteria::{
-    FAR_FROM_NOISE, FAR_SHARES, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_VUONG,
+    FAR_FROM_NOISE, FAR_SHARES, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_TOLD_SHARE,
+    LEAST_VUONG,
 };
 use super::fit::{Data, Effort, Fit, Rest};
 use super::model::{ContactModel, OwnValues, index};
@@ -45,6 +46,8 @@ pub struct Worth {
     pub vuong: f64,
     /// Power that the larger leaves over the sensors' own.
     pub left: f64,
+    /// The same of the smaller.
+    pub left_before: f64,
     /// What a value more has to gain, nats.
     pub price: f64,
 }
@@ -91,6 +94,7 @@ impl Search<'_> {
             part_of_force: self.part_of_force(taken),
             vuong: vuong(&logs(&rest.rows), &logs(&before.rows), block),
             left: rest.over_sensors,
+            left_before: before.over_sensors,
             price: self.price_of_value(&rest),
         }
     }
@@ -122,7 +126,7 @@ impl Search<'_> {
             && worth.share > share
             && worth.part_of_all > part
             && worth.part_of_force > LEAST_PART_OF_FORCE
-            && worth.vuong > LEAST_VUONG
+            && (worth.vuong > LEAST_VUONG || (worth.share > LEAST_TOLD_SHARE && worth.left_before > FAR_FROM_NOISE))
     }
 
     /// What a value more has to gain, nats: half the logarithm of the rows that tell more than one (G. Schwarz, Ann. Stat. 6 (1978) 461).

@@ -105,8 +105,8 @@ impl Effect for ForceDrift {
         match form {
             0 => vec![Start::sized(&[rate], &[0])],
             1 => vec![Start::sized(&[rate, size], &[0, 1])],
-            // Seen in free motion alone: where that is a third of the time, between two contacts or more.
-            3 if scene.shows_sensor_zero() && scene.free_span > 0.3 && scene.visits >= 2 => {
+            // Seen in free motion alone: where no knot goes without. In contact a curve of eight knots is anything that takes time.
+            3 if scene.shows_sensor_zero() && scene.longest_contact < 2.0 / (KNOTS - 1) as f64 && scene.visits >= 2 => {
                 let mut values = vec![size; KNOTS];
                 values.push(scene.duration);
                 vec![Start::sized(&values, &[0, 1, 2, 3, 4, 5, 6, 7])]
