@@ -14,6 +14,7 @@ use crate::diagnose::report::html;
 use crate::error::{InputError, UsageError};
 use crate::investigate::session::separating_trial;
 use crate::outfile::OutFile;
+use crate::page::quantity;
 use crate::recording::Recording;
 use crate::rig::Rig;
 
@@ -77,7 +78,6 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         found.pictures.experiment = designed.or(found.pictures.experiment);
     }
     bar.finish_and_clear();
-    print(&found.answer);
     if let Some(file) = model {
         commit(file, found.improved.to_toml().as_bytes())?;
     }
@@ -85,17 +85,25 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         html::write(&found.answer, &found.pictures, &mut file).map_err(|error| file.fault(&error))?;
         file.commit()?;
     }
-    match (experiment, &found.pictures.experiment) {
-        (Some(file), Some(next)) => commit(file, trajectory(next, &rig).as_bytes())?,
-        (Some(_), None) => eprintln!("note: no alternative is left that a motion would tell: no experiment is written"),
-        (None, _) => {}
+    let is_designed = found.pictures.experiment.is_some();
+    if let (Some(file), Some(next)) = (experiment, &found.pictures.experiment) {
+        commit(file, trajectory(next, &rig).as_bytes())?;
     }
     let text = serde_json::to_string_pretty(&found.answer).context("the diagnosis cannot be written as JSON")? + "\n";
-    match json {
-        Some(file) => commit(file, text.as_bytes()),
-        None if args.json.is_some() => Ok(std::io::stdout().write_all(text.as_bytes())?),
-        None => Ok(()),
+    if let Some(file) = json {
+        commit(file, text.as_bytes())?;
     }
+    print(&found.answer, &text, args.json.as_deref().is_some_and(|path| path.as_os_str() == "-"))?;
+    if args.experiment.is_some() && !is_designed {
+        eprintln!("note: no alternative is left that a motion would tell: no experiment is written");
+    }
+    let experiment = args.experiment.as_ref().filter(|_| is_designed);
+    for path in [args.json.as_ref(), args.report.as_ref(), args.model.as_ref(), experiment].into_iter().flatten() {
+        if path.as_os_str() != "-" {
+            eprintln!("wrote {}", path.display());
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a simulation that ends before its trial does, or lacks one of its channels: a residual against nothing is none.
@@ -141,23 +149,38 @@ fn progress() -> ProgressBar {
     bar
 }
 
-/// To standard error: standard output is for the JSON.
-fn print(answer: &Diagnosis) {
-    eprintln!("{}", answer.summary);
-    for physics in &answer.physics {
-        eprintln!("  {}: {}", physics.name, physics.statement);
-        for value in &physics.parameters {
-            let [low, high] = value.ci95;
-            eprintln!("    {} = {:.4e} {} (95 %: {low:.4e} to {high:.4e})", value.name, value.value, value.unit);
-        }
-    }
-    for rival in &answer.alternatives {
-        eprintln!("  not told apart: {}. {}", rival.physics.join(" and "), rival.separated_by);
+/// The answer to standard output, what else is to be known to standard error; where standard output is for the JSON `text`, all but that.
+fn print(answer: &Diagnosis, text: &str, json_only: bool) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    if json_only {
+        out.write_all(text.as_bytes())?;
+        eprint!("{}", told(answer));
+    } else {
+        out.write_all(told(answer).as_bytes())?;
     }
     for finding in &answer.findings {
         let place = if finding.place.is_empty() { String::new() } else { format!("{}: ", finding.place) };
-        eprintln!("  {}: {place}{}", if finding.grave { "warning" } else { "note" }, finding.text);
+        eprintln!("{}: {place}{}", if finding.grave { "warning" } else { "note" }, finding.text);
     }
+    Ok(())
+}
+
+/// Summary, effects with their values, and what else would do, a line each.
+fn told(answer: &Diagnosis) -> String {
+    let mut lines = vec![answer.summary.clone()];
+    for physics in &answer.physics {
+        lines.push(format!("  {}: {}", physics.name, physics.statement));
+        lines.extend(physics.parameters.iter().map(|value| {
+            let [low, high] = value.ci95;
+            let (number, unit) = (quantity::plain(value.value, &value.unit), &value.unit);
+            format!("    {} = {number} (95 %: {})", value.name, quantity::between(low, high, unit))
+        }));
+    }
+    let alternatives = answer.alternatives.iter();
+    lines.extend(
+        alternatives.map(|other| format!("  not told apart: {}. {}", other.physics.join(" and "), other.separated_by)),
+    );
+    lines.join("\n") + "\n"
 }
 
 fn trajectory(next: &Experiment, rig: &Rig) -> String {

@@ -21,6 +21,12 @@ const SMOOTHING_S: f64 = 0.015;
 /// with a margin (G. F. Franklin, J. D. Powell, M. Workman, *Digital Control*, 1998, ch. 7: twenty rows a period and more).
 const QUICKEST_PART: f64 = 0.3;
 
+/// Following error over the way, in root mean square, of a tool that is led.
+const LED_ERROR: f64 = 0.01;
+
+/// Stiffness of what leads a tool over the contact's: it gives way by the same hundredth.
+const LED_STIFFNESS: f64 = 100.0;
+
 /// Samples a second of a rig of which no recording is there.
 const DEFAULT_RATE_HZ: f64 = 1000.0;
 
@@ -42,6 +48,9 @@ impl LoopModel {
         let rate_hz = trials.iter().map(Recording::rate).find(|rate| rate.is_finite()).unwrap_or(DEFAULT_RATE_HZ);
         if let (Some(drive), Some(control)) = (rig.drive, rig.control) {
             return Self { drive, control, rate_hz };
+        }
+        if trials.iter().any(is_led) {
+            return Self::leading(rig, rate_hz);
         }
         let fitted = trials.iter().filter_map(|trial| Self::fit(rig, trial, rate_hz)).next();
         fitted.unwrap_or_else(|| Self::suitable(rig, rate_hz))
@@ -72,12 +81,27 @@ impl LoopModel {
         let columns: [&[f64]; 4] = [&error, &error_rate, &opposing(&acceleration), &opposing(&velocity)];
         let fitted = least_squares(&columns, &smoothed(trial.force.as_ref()?, width))?;
         let drive = Drive { inertia: fitted[2], viscous: fitted[3].max(0.0), encoder: None };
-        // A tool that is led shows no loop: what is fitted to its rounding swings within some rows, and no sampled loop does.
+        // What swings within some rows was fitted to rounding: no sampled loop does.
         let is_shown = fitted[0] > 0.0
             && fitted[2] > 0.0
             && fitted[0] < fitted[2] * (QUICKEST_PART * rate_hz).powi(2)
             && fitted[1] < fitted[2] * QUICKEST_PART * rate_hz;
         is_shown.then(|| Self { drive, control: control(fitted[0], fitted[1]), rate_hz })
+    }
+
+    /// A tool that is led: a loop a hundred times as stiff as the contact, as quick as its rows can show.
+    fn leading(rig: &Rig, rate_hz: f64) -> Self {
+        let stiffness = LED_STIFFNESS * rig.contact.map_or(1.0, |contact| contact.stiffness.max(f64::MIN_POSITIVE));
+        let bandwidth = 0.5 * QUICKEST_PART * rate_hz;
+        let inertia = stiffness / (bandwidth * bandwidth);
+        let control = Control {
+            proportional: stiffness,
+            derivative: 2.0 * inertia * bandwidth,
+            derivative_filter_hz: None,
+            effort_saturation: f64::INFINITY,
+            rate_hz,
+        };
+        Self { drive: Drive { inertia, viscous: 0.0, encoder: None }, control, rate_hz }
     }
 
     /// A loop of the usual bandwidth.
@@ -95,6 +119,16 @@ impl LoopModel {
         };
         Self { drive, control: rig.control.unwrap_or(control), rate_hz }
     }
+}
+
+/// Whether the tool of `trial` is where its reference is, to a hundredth of its way: the contact does not push it back, and a reference
+/// beyond a limit is a tool beyond it.
+fn is_led(trial: &Recording) -> bool {
+    let Some(reference) = trial.reference.as_ref().filter(|_| trial.effort.is_none()) else { return false };
+    let mean = trial.position.iter().sum::<f64>() / trial.position.len().max(1) as f64;
+    let way: f64 = trial.position.iter().map(|x| (x - mean).powi(2)).sum();
+    let error: f64 = trial.position.iter().zip(reference).map(|(x, r)| (x - r).powi(2)).sum();
+    error < LED_ERROR * LED_ERROR * way
 }
 
 /// Moving average over `width` rows to either side.
