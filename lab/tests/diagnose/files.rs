@@ -11,7 +11,10 @@ fn write(case: &Case, name: &str) -> [Vec<u8>; 3] {
     let place = OUT.map(|kind| format!("{name}.{kind}"));
     let [json, report, model] = &place;
     let arguments = ["--rig", "rig.toml", "trial-1.csv", "trial-2.csv", "--json", json, "--report", report, "--model"];
-    case.command(&arguments).arg(model).assert().success().stdout("");
+    let said = case.command(&arguments).arg(model).assert().success().get_output().clone();
+    let [out, error] = [said.stdout, said.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    assert!(out.starts_with("The simulation leaves out") && out.contains("branch_stiffness = "), "{out}");
+    assert!(place.iter().all(|file| error.contains(&format!("wrote {file}"))), "{error}");
     place.map(|name| fs::read(case.path(&name)).unwrap())
 }
 

@@ -301,9 +301,7 @@ fn jump_variance(fit: &Fit, trial: &ContactTrial, number: usize) -> Vec<f64> {
     let mut variance = vec![0.0; force.len()];
     for (before, pair) in bend.windows(2).enumerate() {
         let square = (part * (1.0 - part) + 1.0 / 12.0) * (-pair[0] * pair[1]).max(0.0);
-        for row in before + 1..before + 3 {
-            variance[row] += square;
-        }
+        variance[before + 1..before + 3].iter_mut().for_each(|row| *row += square);
     }
     variance
 }
