@@ -1,5 +1,6 @@
 //! The command line of `palpate`.
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -66,7 +67,21 @@ enum Command {
 /// Runs the command line; 0 done, 1 the input or a file is at fault, 2 the command line is.
 #[must_use]
 pub fn run() -> ExitCode {
-    let done = match Cli::parse().command {
+    ExitCode::from(run_with(std::env::args_os()))
+}
+
+/// Runs the command line `arguments`, the program's name first; its exit status.
+#[must_use]
+pub fn run_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
+    let parsed = match Cli::try_parse_from(arguments) {
+        Ok(parsed) => parsed,
+        Err(error) => {
+            // Help on standard output, faults on standard error; a closed one cannot be told anything.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(2);
+        }
+    };
+    let done = match parsed.command {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Look(args) => look::run(&args),
         Command::Investigate(args) => investigate::run(&args),
@@ -84,10 +99,10 @@ pub fn run() -> ExitCode {
         Command::Completions(args) => completions::run(&args, Cli::command()),
     };
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => {
             eprintln!("palpate: {error:#}");
-            if error.is::<UsageError>() { ExitCode::from(2) } else { ExitCode::FAILURE }
+            if error.is::<UsageError>() { 2 } else { 1 }
         }
     }
 }

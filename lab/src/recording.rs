@@ -21,6 +21,7 @@ use crate::error::InputError;
 use crate::outfile::OutFile;
 use crate::rig::Rig;
 use columns::Role;
+use data_file::{Channel, DataFile};
 
 /// A trial. All columns are of equal length, at least two rows, every number finite, time strictly increasing.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -53,6 +54,26 @@ impl Recording {
     /// number, a row is ragged, time does not increase, or there are fewer than two rows; with the true line in the file.
     pub fn read(path: &Path, rig: &Rig) -> Result<Self, InputError> {
         read::recording(path, rig)
+    }
+
+    /// The recording in `channels`, by the column names of `rig`; `name` is the trial's, also in errors.
+    ///
+    /// # Errors
+    /// A column is absent, of another length than the time, or of the other coordinate, a value is no finite number, or time does not increase.
+    pub fn from_channels(name: String, channels: Vec<Channel>, rig: &Rig) -> Result<Self, InputError> {
+        assemble::recording(&channels, &name.clone(), name, rig)
+    }
+
+    /// As [`Recording::read`], with `added` in place of the file's columns of the same names.
+    ///
+    /// # Errors
+    /// As [`Recording::read`], without the line in a CSV file.
+    pub fn read_with(path: &Path, added: Vec<Channel>, rig: &Rig) -> Result<Self, InputError> {
+        let mut channels = DataFile::read(path)?.channels;
+        channels.retain(|channel| added.iter().all(|added| added.name != channel.name));
+        channels.extend(added);
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        assemble::recording(&channels, &path.display().to_string(), name, rig)
     }
 
     /// Writes the recording under the column names of `rig`, so that the same rig reads it; whole or not at all.

@@ -1,24 +1,24 @@
 //! From the channels of a file to a [`Recording`], by the names in the rig file.
 
 use super::columns::{self, Role};
-use super::data_file::{Channel, Content, DataFile};
+use super::data_file::{Channel, Content};
 use super::{Recording, computed_effort};
 use crate::error::InputError;
 use crate::rig::Rig;
 
-/// The recording that `rig` finds in `file`; `place` names the file, `name` the trial.
+/// The recording that `rig` finds in `channels`; `place` names the file, `name` the trial.
 ///
 /// Channels with a clock of their own are brought onto that of the position by straight lines between their values, over the time
 /// that all of them cover.
 ///
 /// # Errors
 /// As [`Recording::read`].
-pub fn recording(file: DataFile, place: &str, name: String, rig: &Rig) -> Result<Recording, InputError> {
-    let names: Vec<&str> = file.channels.iter().map(|channel| channel.name.as_str()).collect();
-    let has_clocks = file.channels.iter().any(|channel| channel.clock.is_some()) && rig.columns.time.is_none();
+pub fn recording(channels: &[Channel], place: &str, name: String, rig: &Rig) -> Result<Recording, InputError> {
+    let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+    let has_clocks = channels.iter().any(|channel| channel.clock.is_some()) && rig.columns.time.is_none();
     let found = columns::find(&names, rig, place, has_clocks)?;
     let series =
-        found.iter().map(|(role, at)| Series::of(place, *role, &file.channels[*at])).collect::<Result<Vec<_>, _>>()?;
+        found.iter().map(|(role, at)| Series::of(place, *role, &channels[*at])).collect::<Result<Vec<_>, _>>()?;
     let recording = if has_clocks { resampled(place, series)? } else { aligned(place, series)? };
     let recording = Recording { name, ..into_recording(recording, rig) };
     increasing(place, &recording.time)?;

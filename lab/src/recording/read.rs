@@ -18,7 +18,7 @@ pub fn recording(path: &Path, rig: &Rig) -> Result<Recording, InputError> {
     let name = path.file_name().map_or_else(|| place.clone(), |name| name.to_string_lossy().into_owned());
     match Format::of(path, &bytes)? {
         Format::Csv => File { place, bytes: &bytes }.parse(name, rig),
-        format => assemble::recording(DataFile::parse(&place, format, &bytes)?, &place, name, rig),
+        format => assemble::recording(&DataFile::parse(&place, format, &bytes)?.channels, &place, name, rig),
     }
 }
 

@@ -1,0 +1,200 @@
+"""Names the physics that a simulation leaves out of a recording.
+
+>>> import palpate
+>>> d = palpate.diagnose(["track_1.csv", "track_2.csv"], "rig.toml")
+>>> d.verdict, [physics.name for physics in d.physics]
+"""
+
+from __future__ import annotations
+
+import html as _html
+import json as _json
+import os
+import signal as _signal
+import sys as _sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import _palpate
+
+__version__ = _palpate.__version__
+__all__ = ["Diagnosis", "InputError", "Parameter", "Physics", "diagnose", "main", "read"]
+
+
+class InputError(ValueError):
+    """An input at fault: `place` (file and line, column or key), what was `found`, what was `expected`."""
+
+    def __init__(self, place: str, found: str, expected: str):
+        super().__init__(f"{place}: found {found}, expected {expected}")
+        self.place, self.found, self.expected = place, found, expected
+
+
+@dataclass(frozen=True, eq=False)
+class Parameter:
+    """A value of an effect in `unit` (SI; "1" where it has none), with its 95 % interval `ci95`, an array of two."""
+
+    name: str
+    value: float
+    unit: str
+    ci95: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Physics:
+    """An effect that the simulation leaves out: `acts_in` the contact, the drive or the sensor."""
+
+    name: str
+    acts_in: str
+    statement: str
+    parameters: list[Parameter]
+    evidence: dict = field(repr=False)
+
+
+class Diagnosis:
+    """What a diagnosis found. Every key of the JSON (`palpate schema diagnosis`) is an attribute.
+
+    `physics` is a list of `Physics`, in order of evidence; `json` is the text that `palpate diagnose --json` writes, `html` the report's
+    page, `model` the text of the improved rig file.
+    """
+
+    def __init__(self, json: str, html: str, model: str):
+        self.json, self.html, self.model = json, html, model
+        self._values = _json.loads(json)
+        self.physics = [_physics(entry) for entry in self._values["physics"]]
+
+    def __getattr__(self, name: str):
+        if not name.startswith("_") and name in self._values:
+            return self._values[name]
+        raise AttributeError(f"a diagnosis has no {name}: {', '.join(self._values)}, html, json, model")
+
+    def __dir__(self):
+        return sorted({*super().__dir__(), *self._values})
+
+    def as_dict(self) -> dict:
+        """The JSON as Python's objects."""
+        return _json.loads(self.json)
+
+    def __repr__(self) -> str:
+        return f"<palpate.Diagnosis {self.verdict}: {', '.join(p.name for p in self.physics) or 'nothing missing'}>"
+
+    def _repr_html_(self) -> str:
+        """The report, in a frame of its own: its page is whole and may not touch the notebook's."""
+        return f'<iframe srcdoc="{_html.escape(self.html)}" style="width: 100%; height: 800px; border: 0"></iframe>'
+
+
+def _physics(entry: dict) -> Physics:
+    parameters = [
+        Parameter(p["name"], p["value"], p["unit"], np.array(p["ci95"], dtype=float)) for p in entry["parameters"]
+    ]
+    return Physics(entry["name"], entry["acts_in"], entry["statement"], parameters, entry["evidence"])
+
+
+def diagnose(recordings, rig, *, simulation=None, load=None, effort=None, seed: int = 1, progress=None) -> Diagnosis:
+    """Finds where simulation and recordings differ, and which physics is missing.
+
+    recordings: one or a list, one a trial. Each is the path of a file (CSV, NPZ, MAT version 5, Parquet, MCAP) or a mapping of column names
+        to arrays, a data frame say: `t_s`, `position_m`, `force_N`, `effort_N`, ..., or `position_rad`, `torque_Nm`, `effort_Nm`.
+    rig: the simulation: the path of a rig file, or a dictionary of its tables.
+    simulation: what your own simulator gave for each recording, in the same order and columns.
+    load: what your rigid-body model explains of the effort, N or N m, an array a recording: the drive's balance is effort - load.
+    effort: the effort at the tool, N or N m, an array a recording.
+    seed: of the simulated replicas; the same seed gives the same answer to the bit.
+    progress: called with a sentence at each step.
+
+    Raises InputError for a file, array or value at fault. Ctrl-C ends the wait at once; the work itself ends at its next step.
+    """
+    recordings, tables = _list(recordings), _rig(rig)
+    simulation = [] if simulation is None else _list(simulation)
+    if simulation and len(simulation) != len(recordings):
+        raise InputError("simulation", f"{len(simulation)} of them", f"one a recording, {len(recordings)} in all")
+    added = [[] for _ in recordings]
+    for name, arrays in (("load", load), ("effort", effort)):
+        if arrays is not None:
+            arrays = [arrays] if len(recordings) == 1 and not isinstance(arrays, (list, tuple)) else list(arrays)
+            if len(arrays) != len(recordings):
+                raise InputError(name, f"{len(arrays)} arrays", f"one a recording, {len(recordings)} in all")
+            for columns, array in zip(added, arrays, strict=True):
+                columns.append((_column_name(name, rig), _array(name, array)))
+    trials = [_recording(recording, columns) for recording, columns in zip(recordings, added, strict=True)]
+    with _as_input_error():
+        return Diagnosis(*_palpate.diagnose(tables, trials, [_recording(run, []) for run in simulation], seed, progress))
+
+
+def read(recording, rig) -> dict[str, np.ndarray]:
+    """The channels of a recording as arrays in SI units: `time`, `position`, and those that it has of `velocity`, `force`, `effort`,
+    `reference` and `load`. An effort that was not recorded is computed as the rig's `[effort]` says.
+
+    Raises InputError for a file, array or value at fault.
+    """
+    with _as_input_error():
+        return {name: np.frombuffer(values) for name, values in _palpate.read(_recording(recording, []), _rig(rig))}
+
+
+def main() -> int:
+    """The command `palpate`."""
+    # Python would only take note of Ctrl-C until the command is done.
+    _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+    return _palpate.command(["palpate", *_sys.argv[1:]])
+
+
+class _as_input_error:
+    """Turns the native error, whose arguments are its parts, into an InputError."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if isinstance(error, _palpate.NativeInputError):
+            raise InputError(*error.args) from None
+        return False
+
+
+def _list(given) -> list:
+    return [given] if isinstance(given, (str, os.PathLike, Mapping)) or hasattr(given, "columns") else list(given)
+
+
+def _rig(rig):
+    """A path, or tables as JSON in a tuple."""
+    return (_json.dumps(rig),) if isinstance(rig, Mapping) else os.fspath(rig)
+
+
+def _column_name(role: str, rig) -> str:
+    """The name under which the rig looks for an added column."""
+    if isinstance(rig, Mapping):
+        tables = rig
+    else:
+        import tomllib
+
+        try:
+            with open(rig, "rb") as file:
+                tables = tomllib.load(file)
+        except (OSError, ValueError):
+            # The rig file is read again, by the reader that says what is wrong with it.
+            tables = {}
+    given = tables.get("columns", {}).get(role)
+    is_rotary = tables.get("rig", {}).get("coordinate") == "rotary"
+    return given or f"{role}_{'Nm' if is_rotary else 'N'}"
+
+
+def _recording(recording, added):
+    if isinstance(recording, (str, os.PathLike)):
+        return os.fspath(recording), added
+    columns = recording.items()
+    return [(str(name), _array(str(name), array)) for name, array in columns if _is_series(array)], added
+
+
+def _is_series(array) -> bool:
+    """Text and single numbers in a data frame or mapping are none of the recording."""
+    array = np.asarray(array)
+    return array.ndim > 0 and array.dtype.kind not in "USMm"
+
+
+def _array(name: str, array) -> np.ndarray:
+    array = np.asarray(array)
+    if array.dtype.kind not in "fiub":
+        raise InputError(name, f"an array of {array.dtype}", "numbers")
+    if array.ndim != 1:
+        raise InputError(name, f"an array of shape {array.shape}", "one number a row")
+    return np.ascontiguousarray(array, dtype=np.float64)

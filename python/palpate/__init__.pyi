@@ -1,0 +1,60 @@
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+__version__: str
+
+PathOrTables: TypeAlias = str | os.PathLike[str] | Mapping[str, Any]
+Recording: TypeAlias = str | os.PathLike[str] | Mapping[str, ArrayLike] | Any
+
+class InputError(ValueError):
+    place: str
+    found: str
+    expected: str
+    def __init__(self, place: str, found: str, expected: str) -> None: ...
+
+class Parameter:
+    name: str
+    value: float
+    unit: str
+    ci95: np.ndarray
+
+class Physics:
+    name: str
+    acts_in: str
+    statement: str
+    parameters: list[Parameter]
+    evidence: dict[str, Any]
+
+class Diagnosis:
+    schema: str
+    verdict: str
+    summary: str
+    physics: list[Physics]
+    rivals: list[dict[str, Any]]
+    locations: list[dict[str, Any]]
+    fit: dict[str, Any]
+    checked: list[str]
+    json: str
+    html: str
+    model: str
+    def __init__(self, json: str, html: str, model: str) -> None: ...
+    def __getattr__(self, name: str) -> Any: ...
+    def as_dict(self) -> dict[str, Any]: ...
+    def _repr_html_(self) -> str: ...
+
+def diagnose(
+    recordings: Recording | Sequence[Recording],
+    rig: PathOrTables,
+    *,
+    simulation: Recording | Sequence[Recording] | None = None,
+    load: ArrayLike | Sequence[ArrayLike] | None = None,
+    effort: ArrayLike | Sequence[ArrayLike] | None = None,
+    seed: int = 1,
+    progress: Callable[[str], object] | None = None,
+) -> Diagnosis: ...
+def read(recording: Recording, rig: PathOrTables) -> dict[str, np.ndarray]: ...
+def main() -> int: ...

@@ -1,0 +1,99 @@
+//! The extension module of the Python package `palpate`. Everything that a person sees is in `palpate/__init__.py`.
+
+mod arguments;
+mod cancellable;
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use palpate_lab::diagnose::report::html;
+use palpate_lab::diagnose::{Diagnosis, diagnose as run_diagnosis};
+use palpate_lab::error::InputError;
+use palpate_lab::recording::Recording;
+
+create_exception!(_palpate, NativeInputError, PyValueError, "Place, finding and expectation of an input at fault.");
+
+/// An input at fault as its three parts, anything else as text.
+fn python_error(error: anyhow::Error) -> PyErr {
+    match error.downcast::<InputError>() {
+        Ok(error) => input_error(error),
+        Err(error) => PyRuntimeError::new_err(format!("{error:#}")),
+    }
+}
+
+fn input_error(error: InputError) -> PyErr {
+    NativeInputError::new_err((error.place, error.found, error.expected))
+}
+
+/// The JSON of the command, the report's page and the improved rig file.
+type Answer = (String, String, String);
+
+/// Diagnoses recordings; see `palpate.diagnose`.
+#[pyfunction]
+fn diagnose(
+    py: Python<'_>,
+    rig: &Bound<'_, PyAny>,
+    recordings: Vec<Bound<'_, PyAny>>,
+    simulation: Vec<Bound<'_, PyAny>>,
+    seed: u64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Answer> {
+    let (rig, origin) = arguments::rig(rig)?;
+    let read = |all: &[Bound<'_, PyAny>]| -> PyResult<Vec<Recording>> {
+        all.iter().enumerate().map(|(at, one)| arguments::recording(one, at, &rig)).collect()
+    };
+    let (trials, simulation) = (read(&recordings)?, read(&simulation)?);
+    cancellable::run(py, progress, move |say| {
+        let found = run_diagnosis(&rig, &origin, &trials, &simulation, seed, say)?;
+        let mut page = Vec::new();
+        html::write(&found.answer, &found.pictures, &mut page)?;
+        Ok((json(&found.answer)?, String::from_utf8(page)?, found.improved.to_toml()))
+    })
+}
+
+/// As `palpate diagnose --json` writes it.
+fn json(answer: &Diagnosis) -> anyhow::Result<String> {
+    Ok(serde_json::to_string_pretty(answer)? + "\n")
+}
+
+/// A recording's channels by name, as the bytes of doubles; see `palpate.read`.
+#[pyfunction]
+fn read<'py>(
+    py: Python<'py>,
+    recording: &Bound<'py, PyAny>,
+    rig: &Bound<'py, PyAny>,
+) -> PyResult<Vec<(&'static str, Bound<'py, PyBytes>)>> {
+    let (rig, _) = arguments::rig(rig)?;
+    let recording = arguments::recording(recording, 0, &rig)?;
+    let channels = [
+        ("time", Some(recording.time)),
+        ("position", Some(recording.position)),
+        ("velocity", recording.velocity),
+        ("force", recording.force),
+        ("effort", recording.effort),
+        ("reference", recording.reference),
+        ("load", recording.load),
+    ];
+    let bytes = |values: Vec<f64>| {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_ne_bytes()).collect();
+        PyBytes::new(py, &bytes)
+    };
+    Ok(channels.into_iter().filter_map(|(name, values)| Some((name, bytes(values?)))).collect())
+}
+
+/// The command with its arguments, the program's name first; its exit status.
+#[pyfunction]
+fn command(py: Python<'_>, arguments: Vec<String>) -> u8 {
+    py.detach(|| palpate_lab::cli::run_with(arguments))
+}
+
+#[pymodule]
+fn _palpate(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("NativeInputError", module.py().get_type::<NativeInputError>())?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(diagnose, module)?)?;
+    module.add_function(wrap_pyfunction!(read, module)?)?;
+    module.add_function(wrap_pyfunction!(command, module)?)
+}
