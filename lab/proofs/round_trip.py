@@ -2,7 +2,7 @@
 
     pip install -r lab/proofs/requirements.txt
     cargo build --release --bin palpate
-    python lab/proofs/round_trip.py --palpate target/release/palpate > docs/round_trip.md
+    python lab/proofs/round_trip.py --palpate target/release/palpate --recordings recordings --write docs/export.md
 
 For each effect a concealed machine is played on three commands by a PD controller on a noisy encoder. The first two trials are diagnosed
 against the plain model, the result is exported into that model, and the third command is played on plain and exported model. Compared
@@ -179,23 +179,25 @@ def round_trip(palpate, folder, name, concealed, model):
     command = [palpate, "diagnose", "--rig", "rig.toml", *trials, "--simulation", *simulated, "--model", "improved.toml", "--json", "-"]
     told = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     if told.returncode:
-        return name, "diagnose failed: " + told.stderr.strip(), "", "", "", ""
-    named = [physics["name"] for physics in json.loads(told.stdout)["physics"]] or ["nothing"]
-    said = export(palpate, folder, "mjcf")
-    rest = export(palpate, folder, "python")
-    if said.returncode or rest.returncode:
-        return name, ", ".join(named), "", "", "", (said.stderr + rest.stderr).strip()
-    stepper = None
-    if "EFFECTS = [\n]" not in rest.stdout:
-        module = {}
-        exec(rest.stdout, module)
-        stepper = module["Stepper"]
-    by = "MJCF" if stepper is None else "MJCF and stepper"
+        return name, "diagnose failed: " + told.stderr.strip(), "none", "none", "none", "not exported"
+    named = ", ".join(physics["name"] for physics in json.loads(told.stdout)["physics"]) or "nothing"
     unused = reference(3)
     truth = concealed().play(unused, 3)[:, 2]
-    error = lambda machine, seed: float(np.sqrt(np.mean((machine.play(unused, seed)[:, 2] - truth) ** 2)))
-    before, after = error(Machine(model), 4), error(Machine(said.stdout, stepper=stepper), 4)
-    return name, ", ".join(named), f"{before:.3f}", f"{after:.3f}", f"{error(concealed(), 4):.3f}", by
+    error = lambda machine: float(np.sqrt(np.mean((machine.play(unused, 4)[:, 2] - truth) ** 2)))
+    before, sensors = f"{error(Machine(model)):.3f}", f"{error(concealed()):.3f}"
+    said, rest = export(palpate, folder, "mjcf"), export(palpate, folder, "python")
+    if said.returncode or rest.returncode:
+        return name, named, before, "none", sensors, "not exported: " + (said.stderr or rest.stderr).strip().removeprefix("palpate: ")
+    stepper = stepper_of(rest.stdout)
+    after = f"{error(Machine(said.stdout, stepper=stepper)):.3f}"
+    return name, named, before, after, sensors, "MJCF and stepper" if stepper else "MJCF"
+
+
+def stepper_of(text):
+    """The class in the text of an exported module, None where it has no effect."""
+    module = {}
+    exec(text, module)
+    return module["Stepper"] if module["EFFECTS"] else None
 
 
 def real_cases(folder):
@@ -241,16 +243,16 @@ def real_round_trip(palpate, work, case):
     command = [palpate, "diagnose", "--rig", folder / "rig.toml", *(folder / trial for trial in trials)]
     told = subprocess.run([*command, "--model", "improved.toml", "--json", "-"], cwd=work, capture_output=True, text=True)
     if told.returncode:
-        return name, "diagnose failed: " + told.stderr.strip(), "", "", ""
+        return name, "diagnose failed: " + told.stderr.strip(), "none", "none", "not exported"
     answer = json.loads(told.stdout)
     named = ", ".join(f"{physics['name']} ({values(physics)})" for physics in answer["physics"])
     said, rest = export(palpate, work, "mjcf"), export(palpate, work, "python")
-    module = {}
-    exec(rest.stdout, module)
+    if said.returncode or rest.returncode:
+        return name, named, "none", "none", "not exported: " + (said.stderr or rest.stderr).strip().removeprefix("palpate: ")
     columns = ("t_s", f"position_{position}", f"effort_{effort}", f"load_{effort}")
     table = np.genfromtxt(folder / unused, delimiter=",", names=True)
     table = {column: table[column] for column in table.dtype.names}
-    stepper = module["Stepper"] if module["EFFECTS"] else None
+    stepper = stepper_of(rest.stdout)
     before = holding_force(model, None, table, inertia, columns)
     after = holding_force(said.stdout, stepper, table, inertia, columns)
     return name, named, f"{before:.2f}", f"{after:.2f}", "MJCF and stepper" if stepper else "MJCF"
@@ -266,23 +268,43 @@ def main():
     parser.add_argument("--only", nargs="*", help="names of effects")
     parser.add_argument("--keep", type=pathlib.Path, help="a folder for the files of each case")
     parser.add_argument("--recordings", type=pathlib.Path, help="the folder of real recordings")
+    parser.add_argument("--write", type=pathlib.Path, help="a page that has the two marks: the tables are written between them")
     args = parser.parse_args()
-    print("| concealed | named | effort error before, N | after | the sensors alone | exported by |\n|---|---|---|---|---|---|")
+    tables = []
+    for line in lines(args):
+        print(line, flush=True)
+        tables.append(line)
+    if args.write:
+        page = args.write.read_text()
+        head, _, tail = page.partition(BEGIN)
+        args.write.write_text(head + BEGIN + "\n\n" + "\n".join(tables) + "\n\n" + END + tail.partition(END)[2])
+
+
+BEGIN, END = "<!-- written by lab/proofs/round_trip.py; not by hand -->", "<!-- end of what it wrote -->"
+
+
+def lines(args):
+    """The tables, as they come."""
+    yield "| concealed | named | effort error before, N | after | the sensors alone, N | exported by |"
+    yield "|---|---|---|---|---|---|"
     for name, concealed, model in cases():
         if args.only and name not in args.only:
             continue
         with tempfile.TemporaryDirectory() as temporary:
             folder = args.keep / name if args.keep else pathlib.Path(temporary)
             folder.mkdir(parents=True, exist_ok=True)
-            row = round_trip(args.palpate, folder, name, concealed, model)
-        print("| " + " | ".join(" ".join(cell.split()) for cell in row) + " |")
-        sys.stdout.flush()
+            yield table_row(round_trip(args.palpate, folder, name, concealed, model))
     if args.recordings:
-        print("\n| recording | named | force on the unused trial before, N or N m | after | exported by |\n|---|---|---|---|---|")
+        yield ""
+        yield "| recording | named | force on the unused trial before, N or N m | after | exported by |"
+        yield "|---|---|---|---|---|"
         for case in real_cases(args.recordings.resolve()):
             with tempfile.TemporaryDirectory() as work:
-                print("| " + " | ".join(" ".join(cell.split()) for cell in real_round_trip(args.palpate, pathlib.Path(work), case)) + " |")
-                sys.stdout.flush()
+                yield table_row(real_round_trip(args.palpate, pathlib.Path(work), case))
+
+
+def table_row(cells):
+    return "| " + " | ".join(" ".join(cell.split()) for cell in cells) + " |"
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ mod xml_edit;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::{Args, ValueEnum};
 
 use crate::error::{InputError, UsageError};
@@ -78,6 +78,8 @@ pub struct Export<'a> {
 }
 
 /// An effect that a format cannot say, and why.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{name}: {reason}")]
 pub struct Refused {
     /// The effect.
     pub name: &'static str,
@@ -98,21 +100,13 @@ pub struct Exported {
 /// Runs `palpate export`.
 ///
 /// # Errors
-/// A file at fault, a joint that the model does not have, an element that it has already, or an effect that the format cannot say.
+/// As [`export`], and an output that cannot be written.
 pub fn run(args: &ExportArgs) -> Result<()> {
-    let rig = Rig::read(&args.improved)?;
-    let origin = args.improved.display().to_string();
-    let source = args.improved.file_name().map_or_else(|| origin.clone(), |name| name.to_string_lossy().into_owned());
-    let effects = found_effect::all(&rig, &origin)?;
-    let export = Export { rig: &rig, source, effects, args };
     refuse_own_input(args)?;
-    let model = read_text(&args.into)?;
-    let exported = match args.to {
-        Target::Mjcf => mjcf::export(&export, &model)?,
-        Target::Python => python_stepper::export(&export, &model)?,
-        Target::Urdf | Target::Sdf | Target::Drake => description::export(&export, &model)?,
-    };
-    report(&exported, args, &origin)?;
+    let exported = export(args)?;
+    // To standard error: standard output is for the model.
+    exported.notes.iter().for_each(|note| eprintln!("note: {note}"));
+    exported.refused.iter().for_each(|refused| eprintln!("left out: {refused}"));
     match &args.out {
         Some(path) => {
             let mut file = OutFile::create(path)?;
@@ -123,18 +117,31 @@ pub fn run(args: &ExportArgs) -> Result<()> {
     }
 }
 
-/// To standard error: standard output is for the model.
-fn report(exported: &Exported, args: &ExportArgs, origin: &str) -> Result<()> {
-    for note in &exported.notes {
-        eprintln!("note: {note}");
+/// The model of `args` with what was found in it; `args.out` is not used.
+///
+/// # Errors
+/// A file at fault, a joint that the model does not have, an element that it has already, or, unless `args.partial`, an effect that the
+/// format cannot say.
+pub fn export(args: &ExportArgs) -> Result<Exported, InputError> {
+    let rig = Rig::read(&args.improved)?;
+    let origin = args.improved.display().to_string();
+    let source = args.improved.file_name().map_or_else(|| origin.clone(), |name| name.to_string_lossy().into_owned());
+    let effects = found_effect::all(&rig, &origin)?;
+    let export = Export { rig: &rig, source, effects, args };
+    let model = read_text(&args.into)?;
+    let exported = match args.to {
+        Target::Mjcf => mjcf::export(&export, &model)?,
+        Target::Python => python_stepper::export(&export, &model)?,
+        Target::Urdf | Target::Sdf | Target::Drake => description::export(&export, &model)?,
+    };
+    if args.partial || exported.refused.is_empty() {
+        return Ok(exported);
     }
-    if args.partial {
-        exported.refused.iter().for_each(|refused| eprintln!("left out: {}: {}", refused.name, refused.reason));
-        return Ok(());
-    }
-    if exported.refused.is_empty() {
-        return Ok(());
-    }
+    Err(refusal(&exported, args, &origin))
+}
+
+/// All that the format cannot say, as one error.
+fn refusal(exported: &Exported, args: &ExportArgs, origin: &str) -> InputError {
     let reasons: Vec<String> =
         exported.refused.iter().map(|refused| format!("{} ({})", refused.name, refused.reason)).collect();
     let expected = match args.to {
@@ -143,7 +150,7 @@ fn report(exported: &Exported, args: &ExportArgs, origin: &str) -> Result<()> {
         }
         _ => "effects that this format can say; --partial leaves these out",
     };
-    bail!(InputError::new(format!("{origin}: [[effect]]"), reasons.join("; "), expected))
+    InputError::new(format!("{origin}: [[effect]]"), reasons.join("; "), expected)
 }
 
 fn read_text(path: &Path) -> Result<String, InputError> {

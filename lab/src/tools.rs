@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+use palpate_cases::python::Packages;
+
 /// The target of the images.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
@@ -23,6 +25,14 @@ pub enum Leave {
     /// Only look: a test changes nothing on the machine.
     Look,
 }
+
+/// What the tests of the Python package and its notebook need beside the package.
+pub const PYTHON_TESTS: Packages = Packages {
+    name: "package",
+    purpose: "to test the Python package and to run its notebook",
+    requirements: include_str!("../proofs/requirements.txt"),
+    scripts: &[],
+};
 
 /// A tool that is not there and could not be installed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

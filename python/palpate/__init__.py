@@ -7,11 +7,14 @@
 
 from __future__ import annotations
 
+import contextlib as _contextlib
 import html as _html
 import json as _json
 import os
 import signal as _signal
 import sys as _sys
+import tempfile as _tempfile
+import warnings as _warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -20,7 +23,7 @@ import numpy as np
 from . import _palpate
 
 __version__ = _palpate.__version__
-__all__ = ["Diagnosis", "InputError", "Parameter", "Physics", "diagnose", "main", "read"]
+__all__ = ["Diagnosis", "InputError", "Parameter", "Physics", "diagnose", "export", "main", "read"]
 
 
 class InputError(ValueError):
@@ -130,6 +133,32 @@ def read(recording, rig) -> dict[str, np.ndarray]:
     """
     with _as_input_error():
         return {name: np.frombuffer(values) for name, values in _palpate.read(_recording(recording, []), _rig(rig))}
+
+
+def export(improved, into, joint: str, *, to: str = "mjcf", actuator=None, sensor=None, partial: bool = False) -> str:
+    """The text of the model in the file `into`, with the physics that was found at `joint`; the file itself stays as it is.
+
+    improved: a Diagnosis, or the path of an improved rig file. The joint's coordinate is taken for the rig's position and the force of its
+        actuator for the effort: same sign, same zero, SI units.
+    into: the path of the model, in MJCF, URDF or SDF.
+    to: "mjcf", "urdf", "sdf", "drake" or "python", a module that steps MuJoCo with what MJCF cannot say.
+    actuator: the joint's, where it has several. sensor: that of the contact force, for effects of the sensor.
+    partial: leave out, with a warning, what the format cannot say.
+
+    Raises InputError for a joint that the model does not have, an element that it has already and, unless `partial`, an effect that the
+    format cannot say. What else has to be known (the refitted inertia, say) is a warning.
+    """
+    with _contextlib.ExitStack() as stack, _as_input_error():
+        if isinstance(improved, Diagnosis):
+            text, folder = improved.model, stack.enter_context(_tempfile.TemporaryDirectory())
+            improved = os.path.join(folder, "improved.toml")
+            with open(improved, "w", encoding="utf-8") as file:
+                file.write(text)
+        paths = os.fspath(improved), os.fspath(into)
+        text, notes, left_out = _palpate.export(to, *paths, joint, actuator, sensor, partial)
+    for warning in [*notes, *(f"left out: {effect}" for effect in left_out)]:
+        _warnings.warn(warning, stacklevel=2)
+    return text
 
 
 def main() -> int:

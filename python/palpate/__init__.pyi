@@ -1,6 +1,6 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -57,4 +57,14 @@ def diagnose(
     progress: Callable[[str], object] | None = None,
 ) -> Diagnosis: ...
 def read(recording: Recording, rig: PathOrTables) -> dict[str, np.ndarray]: ...
+def export(
+    improved: Diagnosis | str | os.PathLike[str],
+    into: str | os.PathLike[str],
+    joint: str,
+    *,
+    to: Literal["mjcf", "urdf", "sdf", "drake", "python"] = "mjcf",
+    actuator: str | None = None,
+    sensor: str | None = None,
+    partial: bool = False,
+) -> str: ...
 def main() -> int: ...

@@ -3,6 +3,9 @@
 mod arguments;
 mod cancellable;
 
+use std::path::PathBuf;
+
+use clap::ValueEnum as _;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -11,6 +14,7 @@ use pyo3::types::PyBytes;
 use palpate_lab::diagnose::report::html;
 use palpate_lab::diagnose::{Diagnosis, diagnose as run_diagnosis};
 use palpate_lab::error::InputError;
+use palpate_lab::export::{ExportArgs, Target, export as write_model};
 use palpate_lab::recording::Recording;
 
 create_exception!(_palpate, NativeInputError, PyValueError, "Place, finding and expectation of an input at fault.");
@@ -83,6 +87,28 @@ fn read<'py>(
     Ok(channels.into_iter().filter_map(|(name, values)| Some((name, bytes(values?)))).collect())
 }
 
+/// The model's text, what the user has to know, and what was left out; see `palpate.export`. `to` is a target as the command spells it.
+#[pyfunction]
+fn export(
+    to: &str,
+    improved: PathBuf,
+    into: PathBuf,
+    joint: String,
+    actuator: Option<String>,
+    sensor: Option<String>,
+    partial: bool,
+) -> PyResult<(String, Vec<String>, Vec<String>)> {
+    let names: Vec<String> = Target::value_variants()
+        .iter()
+        .filter_map(|target| Some(target.to_possible_value()?.get_name().to_owned()))
+        .collect();
+    let to = Target::from_str(to, false).map_err(|_| input_error(InputError::new("to", to, names.join(", "))))?;
+    let args = ExportArgs { to, improved, into, joint, actuator, sensor, partial, out: None };
+    let exported = write_model(&args).map_err(input_error)?;
+    let left_out = exported.refused.iter().map(ToString::to_string).collect();
+    Ok((exported.text, exported.notes, left_out))
+}
+
 /// The command with its arguments, the program's name first; its exit status.
 #[pyfunction]
 fn command(py: Python<'_>, arguments: Vec<String>) -> u8 {
@@ -95,5 +121,6 @@ fn _palpate(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(diagnose, module)?)?;
     module.add_function(wrap_pyfunction!(read, module)?)?;
+    module.add_function(wrap_pyfunction!(export, module)?)?;
     module.add_function(wrap_pyfunction!(command, module)?)
 }

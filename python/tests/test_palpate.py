@@ -52,7 +52,7 @@ def diagnosis(folder):
 
 def command(*arguments, cwd=None):
     named = os.environ.get("PALPATE_COMMAND")
-    program = [named] if named else [sys.executable, "-c", "import palpate, sys; sys.exit(palpate.main())"]
+    program = [named] if named else [sys.executable, "-m", "palpate"]
     return subprocess.run([*program, *map(str, arguments)], cwd=cwd, capture_output=True)
 
 
@@ -122,6 +122,80 @@ def test_files_and_rigs_at_fault_are_named(folder):
     assert fault.returncode == 1 and b"no such file" in fault.stderr
     assert command("nonsense").returncode == 2
     assert command("--version").stdout.split()[1].decode() == palpate.__version__
+
+
+MODEL = """<mujoco>
+  <worldbody>   <!-- mine -->
+    <body><joint name="axis" type="slide"/><geom size="0.1"/></body>
+  </worldbody>
+  <actuator><motor name="drive" joint="axis"/></actuator>
+</mujoco>
+"""
+
+
+def test_what_was_found_is_written_into_a_model(folder, diagnosis):
+    model = folder / "model.xml"
+    model.write_text(MODEL)
+    with pytest.warns(UserWarning, match="inertia"):
+        text = palpate.export(diagnosis, model, "axis")
+    assert "<!-- mine -->" in text and "<dcmotor" in text and model.read_text() == MODEL
+    (folder / "improved.toml").write_text(diagnosis.model)
+    arguments = ["--to", "mjcf", folder / "improved.toml", "--into", model, "--joint", "axis"]
+    assert command("export", *arguments).stdout == text.encode()
+    with pytest.warns(UserWarning, match="left out: gravity_load"):
+        palpate.export(diagnosis, write(folder / "model.urdf", URDF), "axis", to="urdf", partial=True)
+
+
+URDF = '<robot name="r"><joint name="axis" type="prismatic"/></robot>'
+
+
+def write(path, text):
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("to", "joint", "model", "words"),
+    [
+        ("mjcf", "axsi", MODEL, "joint axsi.*axis"),
+        ("mjcf", "axis", URDF, "<robot>.*<mujoco>"),
+        ("urdf", "axis", URDF, "gravity_load"),
+        ("step", "axis", MODEL, "to: found step.*mjcf, urdf"),
+    ],
+)
+def test_models_at_fault_are_named(folder, diagnosis, to, joint, model, words):
+    with pytest.raises(palpate.InputError, match=words):
+        palpate.export(diagnosis, write(folder / "fault.xml", model), joint, to=to)
+
+
+def test_an_element_that_the_model_has_is_named(folder):
+    rig = RIG_TEXT + '[[effect]]\nname = "coulomb_friction"\nform = "symmetric"\nlevel_n = 0.45\n'
+    model = MODEL.replace('type="slide"', 'type="slide" frictionloss="0.3"')
+    with pytest.raises(palpate.InputError, match="frictionloss 0.3"):
+        palpate.export(write(folder / "rubs.toml", rig), write(folder / "rubs.xml", model), "axis")
+
+
+FORMATS = pathlib.Path(__file__).parents[2] / "lab" / "tests" / "formats"
+
+
+@pytest.mark.parametrize(
+    ("file", "columns", "words"),
+    [
+        ("object.npz", {}, "force_N.*object array"),
+        ("unequal.npz", {}, "force_N.*49 values.*50"),
+        ("nan.npz", {}, "force_N, value 8.*no number"),
+        ("trial.mcap", {"position": "/joint_states:knee.position"}, "knee.position.*elbow.position"),
+    ],
+)
+def test_files_of_other_formats_at_fault_are_named(file, columns, words):
+    with pytest.raises(palpate.InputError, match=f"{file}.*{words}"):
+        palpate.read(FORMATS / file, {**RIG, "columns": columns})
+
+
+def test_another_format_than_the_ending_says_is_named(folder):
+    (folder / "archive.csv").write_bytes((FORMATS / "trial.npz").read_bytes())
+    with pytest.raises(palpate.InputError, match="archive.csv.*NPZ"):
+        palpate.read(folder / "archive.csv", RIG)
 
 
 def test_ctrl_c_ends_the_wait():

@@ -2,6 +2,8 @@
 
 mod tree;
 
+use std::env::consts::EXE_SUFFIX;
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -15,7 +17,7 @@ use palpate_lab::tools::{self, Leave, Missing, TARGET};
 struct Check {
     name: &'static str,
     arguments: Vec<&'static str>,
-    variables: Vec<(&'static str, &'static str)>,
+    variables: Vec<(&'static str, OsString)>,
 }
 
 fn main() -> ExitCode {
@@ -95,6 +97,7 @@ fn set_up(folder: &Path) -> (Vec<Check>, Vec<String>) {
     for (what, packages) in [
         ("the tests in MuJoCo, Drake and Exudyn", &python::SIMULATORS),
         ("the tests of PySINDy and SysIdentPy", &python::BASELINES),
+        ("the tests of the Python package and its notebook", &tools::PYTHON_TESTS),
     ] {
         let found = python::set_up(&folder.join("target").join("python"), packages);
         ready(what, found.map(drop).map_err(|missing| missing.to_string()));
@@ -137,9 +140,12 @@ fn checks(rustfmt: bool, clippy: bool, target: bool, device: bool) -> Vec<Check>
     }
     let documentation =
         check("documentation", &["doc", "--release", "--workspace", "--no-deps", "--document-private-items"]);
-    checks.push(Check { variables: vec![("RUSTDOCFLAGS", "-D warnings")], ..documentation });
+    checks.push(Check { variables: vec![("RUSTDOCFLAGS", "-D warnings".into())], ..documentation });
     let tests = check("tests", &["test", "--release", "--workspace", "--no-fail-fast"]);
-    let variables = if device { vec![("PALPATE_DEVICE", "required")] } else { Vec::new() };
+    let mut variables = if device { vec![("PALPATE_DEVICE", "required".into())] } else { Vec::new() };
+    // The tests build the command beside this program; the Python package is held against it.
+    let command = std::env::current_exe().map(|verify| verify.with_file_name(format!("palpate{EXE_SUFFIX}")));
+    variables.extend(command.ok().map(|command| ("PALPATE_COMMAND", command.into_os_string())));
     checks.push(Check { variables, ..tests });
     checks
 }
