@@ -18,6 +18,7 @@ mod reading;
 mod resolved;
 mod sensor;
 
+pub use contact::learned::KNOTS;
 pub use contact_simulator::{ActiveEffect, ContactSimulator};
 pub use contact_state::{ContactState, gate, ramp, rounded};
 pub use cubic_segment::CubicSegment;
@@ -116,8 +117,12 @@ pub static ALL: [&dyn Effect; 30] = [
     &sensor::mains_hum::MainsHum,
 ];
 
+/// The element for what no effect explains. It is none of [`ALL`]: no search asks for it, and no list names it.
+pub static LEARNED: &contact::learned::Learned = &contact::learned::Learned;
+
 /// The effect of that name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static dyn Effect> {
-    ALL.into_iter().find(|effect| effect.spec().name == name)
+    let learned: &dyn Effect = LEARNED;
+    ALL.into_iter().chain([learned]).find(|effect| effect.spec().name == name)
 }

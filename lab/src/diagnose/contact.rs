@@ -4,6 +4,7 @@ pub mod criteria;
 pub mod fit;
 pub mod held_out;
 pub mod interval;
+pub mod learned;
 pub mod model;
 pub mod motion;
 pub mod outcome;

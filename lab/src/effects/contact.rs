@@ -5,6 +5,7 @@ pub mod environment_mass;
 pub mod hunt_crossley_damping;
 pub mod hysteresis;
 pub mod layered_stiffness;
+pub mod learned;
 pub mod lost_motion;
 pub mod nonlinear_stiffness;
 pub mod plastic_set;

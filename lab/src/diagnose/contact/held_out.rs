@@ -29,10 +29,16 @@ impl Folds {
     /// The halves of the rows of `data`.
     #[must_use]
     pub fn of(data: &Data<'_>) -> Self {
+        Self::with_blocks(data, BLOCKS)
+    }
+
+    /// The same with `blocks` of a single trial.
+    #[must_use]
+    pub fn with_blocks(data: &Data<'_>, blocks: usize) -> Self {
         let single = data.trials.len() == 1;
         let half = |wanted: usize| {
             let trials = data.trials.iter().enumerate().map(|(number, trial)| {
-                let block = trial.len().div_ceil(BLOCKS).max(1);
+                let block = trial.len().div_ceil(blocks).max(1);
                 (0..trial.len()).map(|row| (if single { row / block } else { number }) % 2 == wanted).collect()
             });
             trials.collect()
@@ -51,12 +57,18 @@ impl Folds {
     /// fitted to that trial; nothing else is.
     #[must_use]
     pub fn held_out(&self, data: &Data<'_>, fit: &Fit) -> HeldOut {
+        self.held_out_holding(data, fit, &|_| false)
+    }
+
+    /// The same where the values that `held` names stay as they are in either half.
+    #[must_use]
+    pub fn held_out_holding(&self, data: &Data<'_>, fit: &Fit, held: &dyn Fn(usize) -> bool) -> HeldOut {
         let mut residual: Vec<Vec<f64>> = data.trials.iter().map(|trial| vec![0.0; trial.len()]).collect();
         let mut energy = 0.0;
         let model = &fit.model;
         let has_own = (0..fit.values.len()).any(|at| model.owner(at).is_some());
         let values = [0, 1].map(|half| {
-            let taught = self.masked(data, half).fit(model, &fit.values, STEPS).values;
+            let taught = self.masked(data, half).fit_holding(model, &fit.values, STEPS, held).values;
             let unseen = self.masked(data, 1 - half);
             let placed = if has_own && data.trials.len() > 1 {
                 let is_shared = |at: usize| model.owner(at).is_none() && !(model.own.surface && at == index::SURFACE);

@@ -9,6 +9,7 @@ use super::criteria::{
 use super::fit::{Data, Effort, Fit, Rest};
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::intervals;
+use super::learned::{LearnedCurve, learned};
 use super::model::{ContactModel, OwnValues, index};
 use super::scales::Scales;
 use super::selection::{Chosen, Search};
@@ -88,10 +89,12 @@ pub struct Outcome {
     pub named: Vec<NamedTerm>,
     /// What else would do.
     pub alternatives: Vec<Alternative>,
+    /// For what is left beside what is named: a learned element, where unseen rows pay for one.
+    pub learned: Option<LearnedCurve>,
     /// Every effect tried alone, the strongest first.
     pub singles: Vec<Single>,
-    /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects, on rows that no fit saw, a
-    /// column a trial.
+    /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects and what is learned beside
+    /// them, on rows that no fit saw, a column a trial.
     pub residuals: [Vec<Vec<f64>>; 3],
     /// What the sensors alone leave, N or N m in root mean square.
     pub expected_noise: f64,
@@ -234,18 +237,23 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         (0..data.trials.len()).map(|trial| data.residual(&fit.model, &fit.values, trial)).collect()
     };
     let given_residual = columns(&given);
+    let finding = finding(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
+    let is_left = matches!(finding, Finding::Unknown | Finding::PartlyExplained);
+    let learned = if is_left { learned(data, &fit) } else { None };
+    let last = learned.as_ref().map_or(improved.residual, |curve| curve.residual.clone());
     Outcome {
         trials: Vec::new(),
         noise: Vec::new(),
         weights: Vec::new(),
-        finding: finding(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]),
+        finding,
+        learned,
         nominal: search.nominal.clone(),
         known_terms: search.nominal.model.terms.len(),
         intervals: intervals(data, &fit, &rest, &improved.values),
         alternatives: alternatives(search, &folds, &fit, &chosen, &refitted),
         named,
         singles: singles(search, &chosen),
-        residuals: [given_residual, refitted.residual, improved.residual],
+        residuals: [given_residual, refitted.residual, last],
         expected_noise: data.expected_noise(),
         chosen: fit,
     }

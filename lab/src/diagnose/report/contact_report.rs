@@ -9,14 +9,19 @@ use super::summary;
 use super::verdict::verdict;
 use crate::diagnose::contact::fit::Data;
 use crate::diagnose::contact::held_out::rms;
+use crate::diagnose::contact::learned::{self, LearnedCurve};
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::outcome::{Finding as Standing, NamedTerm, Outcome};
 use crate::diagnose::contact::trial::ContactTrial;
 use crate::diagnose::experiment;
 use crate::diagnose::phase;
 use crate::diagnose::term::Term;
-use crate::effects::{self, Place, slug};
+use crate::effects::{self, Effect as _, LEARNED, Place, slug};
+use crate::page::quantity;
 use crate::rig::{Contact, Coordinate, Rig};
+
+/// Part of the force's range from which a feature of a learned curve is told.
+const LEAST_FEATURE: f64 = 0.02;
 
 /// The channel's name in the JSON.
 pub const CHANNEL: &str = "force";
@@ -86,8 +91,9 @@ pub fn data(outcome: &Outcome) -> Data<'_> {
 /// The rig `given` with what was found of the contact: refitted values and every effect of the law.
 #[must_use]
 pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
-    let fit = if outcome.named.is_empty() { &outcome.nominal } else { &outcome.chosen };
-    let ends = (!outcome.named.is_empty()).then_some(outcome.intervals.as_slice());
+    let named = if outcome.named.is_empty() { &outcome.nominal } else { &outcome.chosen };
+    let fit = outcome.learned.as_ref().map_or(named, |curve| &curve.fit);
+    let ends = (!outcome.named.is_empty() && outcome.learned.is_none()).then_some(outcome.intervals.as_slice());
     let mut rig = with_law(given, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), ends);
     if outcome.finding == Standing::NoMismatch {
         rig.contact = given.contact;
@@ -136,7 +142,13 @@ fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) ->
     let mut all: Vec<Physics> = outcome.named.iter().map(|named| described(outcome, named, coordinate)).collect();
     all.sort_by(|a, b| b.evidence.held_out_gain.total_cmp(&a.evidence.held_out_gain));
     if matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown) {
-        all.push(unknown(locations, !all.is_empty()));
+        let mut rest = unknown(locations, !all.is_empty());
+        if let Some(curve) = &outcome.learned {
+            rest.statement.push_str(&learned_words(curve, outcome, coordinate));
+            rest.evidence.held_out_gain = curve.held_out_share;
+            LEARNED.spec().forms[0].equation.clone_into(&mut rest.equation);
+        }
+        all.push(rest);
     }
     all
 }
@@ -177,6 +189,28 @@ fn unknown(locations: &[Location], beside: bool) -> Physics {
         parameters: Vec::new(),
         on_drive: None,
     }
+}
+
+/// What a learned curve looks like: only what stands out of the noise.
+fn learned_words(curve: &LearnedCurve, outcome: &Outcome, coordinate: Coordinate) -> String {
+    let (force, length) = (coordinate.force_unit(), coordinate.position_unit());
+    let shape = learned::shape(&curve.paths);
+    let notable = (3.0 * outcome.expected_noise).max(LEAST_FEATURE * shape.range);
+    let share = quantity::percent(100.0 * curve.held_out_share);
+    let mut text = format!(
+        " A curve over depth and direction that is learned from the recordings takes {share} of it on rows that taught nothing"
+    );
+    if let Some([from, to, fall]) = shape.softening.filter(|softening| softening[2] > notable) {
+        let (fall, between) = (quantity::rounded(fall, force, 2), quantity::between(from, to, length));
+        text.push_str(&format!(": the force falls by {fall} between {between}, as in a click"));
+    }
+    let [lower, _] = shape.loop_force;
+    if lower.abs() > notable {
+        let side = if lower > 0.0 { "below" } else { "above" };
+        let (joint, by) = (if text.contains(": ") { ";" } else { ":" }, quantity::rounded(lower.abs(), force, 2));
+        text.push_str(&format!("{joint} the way out lies {by} {side} the way in, in the mean, however slow"));
+    }
+    text + "."
 }
 
 fn alternatives(outcome: &Outcome) -> Vec<Alternative> {
