@@ -40,6 +40,10 @@ pub(crate) fn between(low: f64, high: f64, unit: &str) -> String {
     if !width.is_finite() || width <= 0.0 {
         return format!("{} to {}", plain(low, unit), plain(high, unit));
     }
+    // Ends that differ in the seventh digit are one number to every reader.
+    if width < 1e-6 * low.abs().min(high.abs()) {
+        return plain(0.5 * (low + high), unit);
+    }
     let scale = Scale::of(low.abs().max(high.abs()), unit);
     let decimals = 1 - magnitude(width / scale.factor);
     let ends = [low, high].map(|end| fixed(end / scale.factor, decimals));
@@ -195,6 +199,7 @@ mod tests {
     fn a_range_has_the_digits_of_its_width() {
         assert_eq!(spaced(between(11.9, 12.71, "N s/m^2")), "11.90 to 12.71 N s/m²");
         assert_eq!(spaced(between(-1e-9, 3e-9, "N")), "−1.0 to 3.0 nN");
+        assert_eq!(spaced(between(4.999_999_9e-5, 5.000_000_1e-5, "m/s")), "50 µm/s");
         assert_eq!(spaced(between(f64::NAN, 3e-9, "N")), "unknown to 3 nN");
     }
 

@@ -93,8 +93,8 @@ pub struct Outcome {
     pub learned: Option<LearnedCurve>,
     /// Every effect tried alone, the strongest first.
     pub singles: Vec<Single>,
-    /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects and what is learned beside
-    /// them, on rows that no fit saw, a column a trial.
+    /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects, on rows that no fit saw, a
+    /// column a trial.
     pub residuals: [Vec<Vec<f64>>; 3],
     /// What the sensors alone leave, N or N m in root mean square.
     pub expected_noise: f64,
@@ -240,7 +240,6 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let finding = finding(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
     let is_left = matches!(finding, Finding::Unknown | Finding::PartlyExplained);
     let learned = if is_left { learned(data, &fit) } else { None };
-    let last = learned.as_ref().map_or(improved.residual, |curve| curve.residual.clone());
     Outcome {
         trials: Vec::new(),
         noise: Vec::new(),
@@ -253,7 +252,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         alternatives: alternatives(search, &folds, &fit, &chosen, &refitted),
         named,
         singles: singles(search, &chosen),
-        residuals: [given_residual, refitted.residual, last],
+        residuals: [given_residual, refitted.residual, improved.residual],
         expected_noise: data.expected_noise(),
         chosen: fit,
     }

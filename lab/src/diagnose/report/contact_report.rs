@@ -197,8 +197,9 @@ fn learned_words(curve: &LearnedCurve, outcome: &Outcome, coordinate: Coordinate
     let shape = learned::shape(&curve.paths);
     let notable = (3.0 * outcome.expected_noise).max(LEAST_FEATURE * shape.range);
     let share = quantity::percent(100.0 * curve.held_out_share);
+    let left = quantity::rounded(rms(&data(outcome), &curve.residual), force, 3);
     let mut text = format!(
-        " A curve over depth and direction that is learned from the recordings takes {share} of it on rows that taught nothing"
+        " A curve over depth and direction that is learned from the recordings takes {share} of it on rows that taught nothing and leaves {left}"
     );
     if let Some([from, to, fall]) = shape.softening.filter(|softening| softening[2] > notable) {
         let (fall, between) = (quantity::rounded(fall, force, 2), quantity::between(from, to, length));

@@ -37,13 +37,8 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                     phase::word(location.phase)
                 )
             });
-            let learned = if fit.improved < fit.refitted {
-                format!(" A curve learned from them leaves {after} on data that no fit saw.")
-            } else {
-                String::new()
-            };
             format!(
-                "Something is missing that no effect of the list explains: {before} are left where the sensors leave {expected_noise}.{place}{learned}"
+                "Something is missing that no effect of the list explains: {before} are left where the sensors leave {expected_noise}.{place}"
             )
         }
         Verdict::Explained | Verdict::PartlyExplained => {
