@@ -1,11 +1,13 @@
 //! The diagnosis as data, as a page, and as an improved rig file.
 
-pub mod contact_map;
+mod channel;
 pub mod contact_report;
+mod contact_residual;
 pub mod diagnosis;
-pub mod drive_map;
 pub mod drive_report;
+mod drive_residual;
 pub mod html;
 pub mod merge;
+mod residual_map;
 pub mod summary;
 pub mod verdict;

@@ -1,10 +1,8 @@
 //! The diagnosis of the contact's channel, from what was identified of it.
 
-use super::contact_map;
-use super::diagnosis::{
-    Alternative, Diagnosis, EffectEvidence, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData, Trace,
-    Value,
-};
+use super::channel::{self, Residuals};
+use super::contact_residual::contact_residual;
+use super::diagnosis::{Diagnosis, Evidence, Finding, Location, Nominal, Physics, PlotData, Trace};
 use super::summary;
 use super::verdict::verdict;
 use crate::diagnose::contact::fit::Data;
@@ -13,7 +11,6 @@ use crate::diagnose::contact::learned::{self, LearnedCurve};
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::outcome::{Finding as Standing, NamedTerm, Outcome};
 use crate::diagnose::contact::trial::ContactTrial;
-use crate::diagnose::experiment;
 use crate::diagnose::phase;
 use crate::diagnose::term::Term;
 use crate::effects::{self, Effect as _, LEARNED, Place, slug};
@@ -30,15 +27,25 @@ pub const CHANNEL: &str = "force";
 #[must_use]
 pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
-    let fit = quality(outcome, coordinate);
-    let locations =
-        if outcome.finding == Standing::NoMismatch { Vec::new() } else { contact_map::locations(outcome, coordinate) };
+    let fit = residuals(outcome).quality(CHANNEL, coordinate.force_unit(), 0.5 / outcome.nominal.model.scales.step_s);
+    let residual = contact_residual(outcome, coordinate);
+    let locations = if outcome.finding == Standing::NoMismatch { Vec::new() } else { residual.locations() };
+    let answer = outcome.chosen.model.names(outcome.known_terms);
+    let alternatives: Vec<_> = outcome
+        .alternatives
+        .iter()
+        .map(|other| channel::alternative(&answer, &other.names, other.held_out_share, OTHERWISE))
+        .collect();
+    let singles = outcome.singles.iter();
+    let scores = singles
+        .map(|tried| channel::evidence(tried.name, tried.share, tried.p_value, &answer, &alternatives))
+        .collect();
     let mut diagnosis = Diagnosis {
         schema: "palpate.diagnosis/1",
         verdict: verdict(outcome.finding),
         summary: String::new(),
         physics: physics(outcome, coordinate, &locations),
-        alternatives: alternatives(outcome),
+        alternatives,
         locations,
         channels: vec![fit.clone()],
         fit,
@@ -57,29 +64,20 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         position_unit: coordinate.position_unit(),
         force_unit: coordinate.force_unit(),
         traces: traces(outcome),
-        maps: contact_map::maps(outcome, coordinate),
-        scores: scores(outcome),
+        maps: residual.maps(),
+        scores,
         experiment: None,
     };
     (diagnosis, plots)
 }
 
-fn quality(outcome: &Outcome, coordinate: Coordinate) -> FitQuality {
+/// Advice where the list knows no experiment for a pair.
+const OTHERWISE: &str = "Contacts to more depths and at more speeds, with holds and slow releases.";
+
+fn residuals(outcome: &Outcome) -> Residuals {
     let data = data(outcome);
-    let [as_given, refitted, improved] = [0, 1, 2].map(|of| rms(&data, &outcome.residuals[of]));
-    let above = refitted.powi(2) - outcome.expected_noise.powi(2);
-    let taken = refitted.powi(2) - improved.powi(2);
-    FitQuality {
-        channel: CHANNEL,
-        unit: coordinate.force_unit(),
-        noise_floor: outcome.expected_noise,
-        as_given,
-        refitted,
-        improved,
-        held_out: true,
-        explained_share: if above > 0.0 { (taken / above).clamp(0.0, 1.0) } else { 0.0 },
-        band_hz: 0.5 / outcome.nominal.model.scales.step_s,
-    }
+    let of_laws = [0, 1, 2].map(|of| rms(&data, &outcome.residuals[of]));
+    Residuals { of_laws, expected_noise: outcome.expected_noise }
 }
 
 /// The rows of `outcome` with their worth.
@@ -139,37 +137,32 @@ fn with_law(
 }
 
 fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
-    let mut all: Vec<Physics> = outcome.named.iter().map(|named| described(outcome, named, coordinate)).collect();
-    all.sort_by(|a, b| b.evidence.held_out_gain.total_cmp(&a.evidence.held_out_gain));
-    if matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown) {
-        let mut rest = unknown(locations, !all.is_empty());
+    let named: Vec<Physics> = outcome.named.iter().map(|named| described(outcome, named, coordinate)).collect();
+    let is_left = matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown);
+    let rest = is_left.then(|| {
+        let mut rest = unknown(locations, !named.is_empty());
         if let Some(curve) = &outcome.learned {
             rest.statement.push_str(&learned_words(curve, outcome, coordinate));
             rest.evidence.held_out_gain = curve.held_out_share;
             LEARNED.spec().forms[0].equation.clone_into(&mut rest.equation);
         }
-        all.push(rest);
-    }
-    all
+        rest
+    });
+    channel::in_order(named, rest)
 }
 
 fn described(outcome: &Outcome, named: &NamedTerm, coordinate: Coordinate) -> Physics {
     let model = &outcome.chosen.model;
     let (term, start) = (model.terms[named.at], model.first_value_of(named.at));
     let spec = term.effect.spec();
-    let parameters = term.parameters().iter().enumerate().map(|(at, parameter)| Value {
-        name: parameter.name.to_owned(),
-        value: outcome.chosen.values[start + at],
-        unit: coordinate.pick(parameter.unit).to_owned(),
-        ci95: outcome.intervals[start + at],
-    });
+    let (values, intervals) = (&outcome.chosen.values[start..], &outcome.intervals[start..]);
     Physics {
         name: spec.name.to_owned(),
         acts_in: spec.place.name(),
         statement: format!("{}.", spec.statement),
         equation: spec.forms[term.form].equation.to_owned(),
         evidence: Evidence { held_out_gain: named.held_out_share, p_value: named.p_value },
-        parameters: parameters.collect(),
+        parameters: channel::parameters(term.effect, term.form, coordinate, values, intervals),
         on_drive: term.effect.on_drive().map(str::to_owned),
     }
 }
@@ -212,26 +205,6 @@ fn learned_words(curve: &LearnedCurve, outcome: &Outcome, coordinate: Coordinate
         text.push_str(&format!("{joint} the way out lies {by} {side} the way in, in the mean, however slow"));
     }
     text + "."
-}
-
-fn alternatives(outcome: &Outcome) -> Vec<Alternative> {
-    let own = outcome.chosen.model.names(outcome.known_terms);
-    let each = outcome.alternatives.iter().map(|other| {
-        // What is new in the alternative comes first: it is what a reader has to weigh.
-        let (shared, new): (Vec<&str>, Vec<&str>) = other.names.iter().partition(|name| own.contains(name));
-        let gone = own.iter().copied().find(|name| !other.names.contains(name));
-        let law = |name: &str| Some(Term { effect: effects::find(name)?, form: 0 });
-        let separated = match (gone.and_then(law), new.first().and_then(|new| law(new))) {
-            (Some(gone), Some(new)) => experiment::separated_by(&gone, &new),
-            _ => "Contacts to more depths and at more speeds, with holds and slow releases.".to_owned(),
-        };
-        Alternative {
-            physics: new.iter().chain(&shared).map(|name| (*name).to_owned()).collect(),
-            held_out_gain: other.held_out_share,
-            separated_by: separated,
-        }
-    });
-    each.collect()
 }
 
 fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
@@ -320,24 +293,6 @@ fn traces(outcome: &Outcome) -> Vec<Trace> {
             expected_noise: outcome.weights[at].iter().map(noise).collect(),
             valid: trial.counts.clone(),
         }
-    });
-    each.collect()
-}
-
-fn scores(outcome: &Outcome) -> Vec<EffectEvidence> {
-    let named = outcome.chosen.model.names(outcome.known_terms);
-    let open: Vec<&str> = outcome.alternatives.iter().flat_map(|other| other.names.iter().copied()).collect();
-    let each = outcome.singles.iter().map(|single| EffectEvidence {
-        name: single.name,
-        held_out_gain: single.share,
-        p_value: single.p_value,
-        role: if named.contains(&single.name) {
-            "answer"
-        } else if open.contains(&single.name) {
-            "alternative"
-        } else {
-            ""
-        },
     });
     each.collect()
 }

@@ -1,10 +1,8 @@
 //! The diagnosis of the drive's channel, from what was identified of it.
 
-use super::diagnosis::{
-    Alternative, BinnedResidual, Diagnosis, EffectEvidence, Evidence, FitQuality, Location, Nominal, Phase, Physics,
-    PlotData, Trace, Value,
-};
-use super::drive_map;
+use super::channel::{self, Residuals};
+use super::diagnosis::{Diagnosis, Evidence, Location, Nominal, Phase, Physics, PlotData, Trace};
+use super::drive_residual::drive_residual;
 use super::summary;
 use super::verdict::verdict;
 use crate::diagnose::drive::held_out::rms;
@@ -14,8 +12,6 @@ use crate::diagnose::drive::model::index;
 use crate::diagnose::drive::named::{NamedEffect, named};
 use crate::diagnose::drive::outcome::{Finding as Standing, Outcome};
 use crate::diagnose::drive::term::Term;
-use crate::diagnose::experiment;
-use crate::diagnose::term;
 use crate::effects::{self, Place, slug};
 use crate::rig::{Coordinate, Drive, Rig};
 
@@ -26,15 +22,30 @@ pub const CHANNEL: &str = "effort";
 #[must_use]
 pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
-    let fit = quality(outcome, coordinate);
-    let locations =
-        if outcome.finding == Standing::NoMismatch { Vec::new() } else { drive_map::locations(outcome, coordinate) };
+    let residuals = residuals(outcome);
+    let fit = residuals.quality(CHANNEL, coordinate.force_unit(), outcome.band_hz);
+    let residual = drive_residual(outcome, coordinate);
+    let locations = if outcome.finding == Standing::NoMismatch { Vec::new() } else { residual.locations() };
+    let answer = outcome.chosen.model.names();
+    let alternatives: Vec<_> = outcome
+        .alternatives
+        .iter()
+        .map(|other| {
+            // The outcome's share is of all that refitted values leave, noise and all.
+            let left = fit.refitted * (1.0 - other.held_out_share).sqrt();
+            channel::alternative(&answer, &other.names, residuals.share_taken(left), OTHERWISE)
+        })
+        .collect();
+    let singles = outcome.singles.iter();
+    let scores = singles
+        .map(|tried| channel::evidence(tried.name, tried.share, tried.p_value, &answer, &alternatives))
+        .collect();
     let mut diagnosis = Diagnosis {
         schema: "palpate.diagnosis/1",
         verdict: verdict(outcome.finding),
         summary: String::new(),
         physics: physics(outcome, coordinate, &locations),
-        alternatives: alternatives(outcome),
+        alternatives,
         locations,
         channels: vec![fit.clone()],
         fit,
@@ -53,28 +64,19 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         position_unit: coordinate.position_unit(),
         force_unit: coordinate.force_unit(),
         traces: traces(outcome),
-        maps: maps(outcome, coordinate),
-        scores: scores(outcome),
+        maps: residual.maps(),
+        scores,
         experiment: None,
     };
     (diagnosis, plots)
 }
 
-fn quality(outcome: &Outcome, coordinate: Coordinate) -> FitQuality {
-    let [as_given, refitted, improved] = [0, 1, 2].map(|of| rms(&outcome.missing[of]));
-    let above = refitted.powi(2) - outcome.expected_noise.powi(2);
-    let taken = refitted.powi(2) - improved.powi(2);
-    FitQuality {
-        channel: CHANNEL,
-        unit: coordinate.force_unit(),
-        noise_floor: outcome.expected_noise,
-        as_given,
-        refitted,
-        improved,
-        held_out: true,
-        explained_share: if above > 0.0 { (taken / above).clamp(0.0, 1.0) } else { 0.0 },
-        band_hz: outcome.band_hz,
-    }
+/// Advice where the list knows no experiment for a pair.
+const OTHERWISE: &str = "A longer recording over more of the travel and at more speeds.";
+
+fn residuals(outcome: &Outcome) -> Residuals {
+    let of_laws = [0, 1, 2].map(|of| rms(&outcome.missing[of]));
+    Residuals { of_laws, expected_noise: outcome.expected_noise }
 }
 
 /// The effects of the answer, in order of evidence.
@@ -112,7 +114,7 @@ pub fn refined(given: &Rig, base: &Rig, outcome: &Outcome) -> Rig {
 }
 
 fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
-    let mut all: Vec<Physics> = outcome
+    let named: Vec<Physics> = outcome
         .named
         .iter()
         .filter_map(|term| {
@@ -120,31 +122,21 @@ fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) ->
             Some(described(&effect, coordinate, Evidence { held_out_gain: term.held_out_share, p_value: term.p_value }))
         })
         .collect();
-    all.sort_by(|a, b| b.evidence.held_out_gain.total_cmp(&a.evidence.held_out_gain));
-    if matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown) {
-        all.push(unknown(locations, !all.is_empty()));
-    }
-    all
+    let is_left = matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown);
+    let rest = is_left.then(|| unknown(locations, !named.is_empty()));
+    channel::in_order(named, rest)
 }
 
 fn described(named: &NamedEffect, coordinate: Coordinate, evidence: Evidence) -> Physics {
     let spec = named.effect.spec();
     let form = &spec.forms[named.form];
-    let parameters = form.parameters.iter().zip(&named.values).zip(&named.intervals);
     Physics {
         name: spec.name.to_owned(),
         acts_in: spec.place.name(),
         statement: format!("{}.", spec.statement),
         equation: form.equation.to_owned(),
         evidence,
-        parameters: parameters
-            .map(|((parameter, value), ends)| Value {
-                name: parameter.name.to_owned(),
-                value: *value,
-                unit: coordinate.pick(parameter.unit).to_owned(),
-                ci95: *ends,
-            })
-            .collect(),
+        parameters: channel::parameters(named.effect, named.form, coordinate, &named.values, &named.intervals),
         on_drive: named.effect.on_drive().map(str::to_owned),
     }
 }
@@ -161,26 +153,6 @@ fn unknown(locations: &[Location], beside: bool) -> Physics {
         parameters: Vec::new(),
         on_drive: None,
     }
-}
-
-fn alternatives(outcome: &Outcome) -> Vec<Alternative> {
-    let own = outcome.chosen.model.names();
-    let each = outcome.alternatives.iter().map(|other| {
-        // What is new in the alternative comes first: it is what a reader has to weigh.
-        let (shared, new): (Vec<&str>, Vec<&str>) = other.names.iter().partition(|name| own.contains(name));
-        let gone = own.iter().copied().find(|name| !other.names.contains(name));
-        let law = |name: &str| Some(term::Term { effect: effects::find(name)?, form: 0 });
-        let separated = match (gone.and_then(law), new.first().and_then(|new| law(new))) {
-            (Some(gone), Some(new)) => experiment::separated_by(&gone, &new),
-            _ => "A longer recording over more of the travel and at more speeds.".to_owned(),
-        };
-        Alternative {
-            physics: new.iter().chain(&shared).map(|name| (*name).to_owned()).collect(),
-            held_out_gain: other.held_out_share,
-            separated_by: separated,
-        }
-    });
-    each.collect()
 }
 
 fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
@@ -221,28 +193,6 @@ fn traces(outcome: &Outcome) -> Vec<Trace> {
             expected_noise: vec![outcome.expected_noise as f32; trial.len()],
             valid: trial.restart.iter().map(|restart| !restart).collect(),
         }
-    });
-    each.collect()
-}
-
-fn maps(outcome: &Outcome, coordinate: Coordinate) -> Vec<BinnedResidual> {
-    drive_map::maps(outcome, coordinate)
-}
-
-fn scores(outcome: &Outcome) -> Vec<EffectEvidence> {
-    let named = outcome.chosen.model.names();
-    let open: Vec<&str> = outcome.alternatives.iter().flat_map(|other| other.names.iter().copied()).collect();
-    let each = outcome.singles.iter().map(|single| EffectEvidence {
-        name: single.name,
-        held_out_gain: single.share,
-        p_value: single.p_value,
-        role: if named.contains(&single.name) {
-            "answer"
-        } else if open.contains(&single.name) {
-            "alternative"
-        } else {
-            ""
-        },
     });
     each.collect()
 }

@@ -1,0 +1,114 @@
+//! What the reports of contact and drive have in common.
+
+use super::diagnosis::{Alternative, EffectEvidence, FitQuality, Physics, Value};
+use crate::diagnose::experiment;
+use crate::diagnose::term::Term;
+use crate::effects::{self, Effect};
+use crate::rig::Coordinate;
+
+/// Root mean squares of a channel's residual on rows that no fit saw.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Residuals {
+    /// By the rig file as given, by refitted values, and with the named effects.
+    pub(super) of_laws: [f64; 3],
+    /// What the sensors leave.
+    pub(super) expected_noise: f64,
+}
+
+impl Residuals {
+    /// Share of the power above the expected noise that refitted values leave, which a law that leaves `left` takes away: the one
+    /// measure of the answer and of whatever is compared with it. From 0 to 1; 0 where refitted values leave no more than noise.
+    pub(super) fn share_taken(&self, left: f64) -> f64 {
+        let [_, refitted, _] = self.of_laws;
+        let above = refitted.powi(2) - self.expected_noise.powi(2);
+        if above > 0.0 { ((refitted.powi(2) - left.powi(2)) / above).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// As the page and the JSON show them.
+    pub(super) fn quality(&self, channel: &'static str, unit: &'static str, band_hz: f64) -> FitQuality {
+        let [as_given, refitted, improved] = self.of_laws;
+        FitQuality {
+            channel,
+            unit,
+            noise_floor: self.expected_noise,
+            as_given,
+            refitted,
+            improved,
+            held_out: true,
+            explained_share: self.share_taken(improved),
+            band_hz,
+        }
+    }
+}
+
+/// The parameters of a law with their values and 95 % intervals.
+pub(super) fn parameters(
+    effect: &dyn Effect,
+    form: usize,
+    coordinate: Coordinate,
+    values: &[f64],
+    intervals: &[[f64; 2]],
+) -> Vec<Value> {
+    let each = effect.spec().forms[form].parameters.iter().zip(values).zip(intervals);
+    each.map(|((parameter, value), ends)| Value {
+        name: parameter.name.to_owned(),
+        value: *value,
+        unit: coordinate.pick(parameter.unit).to_owned(),
+        ci95: *ends,
+    })
+    .collect()
+}
+
+/// `named` in order of evidence, and `rest`, what is reported as unknown, after them.
+pub(super) fn in_order(mut named: Vec<Physics>, rest: Option<Physics>) -> Vec<Physics> {
+    named.sort_by(|a, b| b.evidence.held_out_gain.total_cmp(&a.evidence.held_out_gain));
+    named.extend(rest);
+    named
+}
+
+/// A set of effects `names` that the recordings do not tell from `answer`; `otherwise` is the advice where the list knows none.
+pub(super) fn alternative(answer: &[&str], names: &[&str], held_out_gain: f64, otherwise: &str) -> Alternative {
+    // What is new in the alternative comes first: it is what a reader has to weigh.
+    let (shared, new): (Vec<&str>, Vec<&str>) = names.iter().partition(|name| answer.contains(name));
+    let gone = answer.iter().find(|name| !names.contains(name));
+    let law = |name: &&str| Some(Term { effect: effects::find(name)?, form: 0 });
+    let separated_by = match (gone.and_then(law), new.first().and_then(law)) {
+        (Some(gone), Some(new)) => experiment::separated_by(&gone, &new),
+        _ => otherwise.to_owned(),
+    };
+    Alternative { physics: new.into_iter().chain(shared).map(str::to_owned).collect(), held_out_gain, separated_by }
+}
+
+/// Evidence of an effect tried alone, with what became of it.
+pub(super) fn evidence(
+    name: &'static str,
+    share: f64,
+    p_value: f64,
+    answer: &[&str],
+    alternatives: &[Alternative],
+) -> EffectEvidence {
+    let is_open = || alternatives.iter().any(|other| other.physics.iter().any(|other| other == name));
+    let role = if answer.contains(&name) {
+        "answer"
+    } else if is_open() {
+        "alternative"
+    } else {
+        ""
+    };
+    EffectEvidence { name, held_out_gain: share, p_value, role }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_measure_serves_the_answer_and_what_is_compared_with_it() {
+        let residuals = Residuals { of_laws: [7.0, 5.0, 3.5], expected_noise: 3.0 };
+        // (25 - 12.25) / (25 - 9)
+        assert_eq!(residuals.quality("force", "N", 1.0).explained_share, 0.796_875);
+        assert_eq!(residuals.share_taken(3.5), 0.796_875);
+        assert_eq!((residuals.share_taken(6.0), residuals.share_taken(1.0)), (0.0, 1.0));
+        assert_eq!(Residuals { expected_noise: 5.0, ..residuals }.share_taken(3.0), 0.0);
+    }
+}

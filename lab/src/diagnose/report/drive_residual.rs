@@ -1,0 +1,66 @@
+//! The residual of the drive's channel, row by row.
+
+use super::drive_report::{CHANNEL, PHASE};
+use super::residual_map::{ChannelResidual, ResidualRow};
+use crate::diagnose::drive::outcome::{Finding, Outcome};
+use crate::diagnose::drive::trial::DriveTrial;
+use crate::rig::Coordinate;
+
+/// Length of a stretch that is told as a place, s; a shorter trial is one stretch.
+const STRETCH_S: f64 = 1.0;
+
+/// The rows of `outcome`.
+pub(super) fn drive_residual(outcome: &Outcome, coordinate: Coordinate) -> ChannelResidual<'_> {
+    let step_s = outcome.trials.first().map_or(1.0, |trial| trial.period_s);
+    let highest_hz = outcome.band_hz.min(0.45 / step_s);
+    ChannelResidual {
+        channel: CHANNEL,
+        coordinate,
+        position_name: "position",
+        trials: outcome.trials.iter().map(|trial| trial.name.as_str()).collect(),
+        rows: rows(outcome),
+        columns: [before(outcome), &outcome.missing[2]],
+        step_s,
+        highest_hz,
+        expected_noise: outcome.expected_noise,
+        // The missing force is smoothed: all of its noise lies within the band.
+        noise_to_hz: highest_hz,
+        longest_s: STRETCH_S,
+    }
+}
+
+fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
+    let noise = outcome.expected_noise.powi(2);
+    let before = before(outcome);
+    let mut rows = Vec::new();
+    for (number, trial) in outcome.trials.iter().enumerate() {
+        for row in 0..trial.len() {
+            rows.push(ResidualRow {
+                trial: number,
+                time_s: trial.time[row] - trial.time[0],
+                position: trial.position[row],
+                velocity: velocity(trial, row),
+                phase: PHASE,
+                before: before[number][row].powi(2),
+                after: outcome.missing[2][number][row].powi(2),
+                noise,
+            });
+        }
+    }
+    rows
+}
+
+/// The mismatch that is located: of given values where nothing but them is wrong, else of refitted ones.
+fn before(outcome: &Outcome) -> &[Vec<f64>] {
+    match outcome.finding {
+        Finding::NoMismatch | Finding::Parameters => &outcome.missing[0],
+        _ => &outcome.missing[1],
+    }
+}
+
+/// Velocity over some rows: one row is the encoder's step.
+pub(super) fn velocity(trial: &DriveTrial, row: usize) -> f64 {
+    const HALF: usize = 5;
+    let (from, to) = (row.saturating_sub(HALF), (row + HALF).min(trial.len() - 1));
+    if to == from { 0.0 } else { (trial.position[to] - trial.position[from]) / (trial.time[to] - trial.time[from]) }
+}
