@@ -142,7 +142,6 @@ fn zeroed(contact: &contact::outcome::Outcome, trials: &[Recording]) -> Vec<Reco
                 start: 0.0,
                 step,
                 filter_width: 0.0,
-                added_filter_width: 0.0,
                 acceleration: &acceleration,
                 force: &mut shown,
             };

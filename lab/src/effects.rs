@@ -14,6 +14,7 @@ mod drive;
 mod drive_state;
 mod effect_spec;
 mod excitation_stats;
+mod first_order_lag;
 mod reading;
 mod resolved;
 mod sensor;
@@ -21,10 +22,10 @@ mod sensor;
 pub use contact::learned::KNOTS;
 pub use contact_simulator::{ActiveEffect, ContactSimulator};
 pub use contact_state::{ContactState, gate, ramp, rounded};
-pub use cubic_segment::CubicSegment;
 pub use drive_state::DriveState;
 pub use effect_spec::{EffectSpec, Form, Limit, Parameter, Place, Stage, key_of, slug};
-pub use excitation_stats::{Abscissa, ExcitationStats, FrequencySearch, Start, ToneWeight, geometric, linear};
+pub use excitation_stats::{ExcitationStats, FrequencySearch, Start, ToneWeight, geometric, linear};
+pub use first_order_lag::lagged;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 
@@ -63,7 +64,7 @@ pub trait Effect: Sync {
         &[]
     }
 
-    /// For a form that repeats along time or way: where to look for its frequency. Its `starts` are then empty.
+    /// For a form that repeats in time: where to look for its frequency. Its `starts` are then empty.
     fn frequency_search(&self, _form: usize, _scene: &ExcitationStats) -> Option<FrequencySearch> {
         None
     }

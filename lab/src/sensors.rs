@@ -45,33 +45,11 @@ impl Figures {
     }
 }
 
-impl Figures {
-    /// Of means of `parts` rows.
-    #[must_use]
-    pub fn thinned(&self, parts: usize) -> Self {
-        Self {
-            position: self.position.thinned(parts),
-            force: self.force.map(|force| force.thinned(parts)),
-            effort: self.effort.map(|effort| effort.thinned(parts)),
-        }
-    }
-}
-
 /// Steps of noise from which rounding is as good as noise: Gaussian noise of half a step leaves less than two per cent of
 /// the rounding's error tied to where the truth lies in the step.
 pub const DITHER_FRACTION: f64 = 0.5;
 
 impl Channel {
-    fn thinned(self, parts: usize) -> Self {
-        let parts = parts as f64;
-        let rounding = self.resolution / 12f64.sqrt();
-        let shake = (self.noise * self.noise - rounding * rounding).max(0.0).sqrt();
-        if shake >= DITHER_FRACTION * self.resolution {
-            return Self { resolution: self.resolution / parts.sqrt(), noise: self.noise / parts.sqrt() };
-        }
-        Self { noise: (shake * shake / parts + rounding * rounding).sqrt(), ..self }
-    }
-
     /// A given noise is that before rounding, a measured one already contains it.
     fn of(time: &[f64], values: &[f64], resolution: Option<f64>, noise: Option<f64>) -> Self {
         let resolution = resolution.unwrap_or_else(|| quantum(values));

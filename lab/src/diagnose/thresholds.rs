@@ -227,68 +227,10 @@ pub mod dequantize {
 
 /// Of `signals/derivative_filter`.
 pub mod derivative_filter {
-    /// Greatest share of the rate that is looked at.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_CUTOFF_OVER_RATE: f64 = 0.2;
-
-    /// Rows of the analysis a period of the -3 dB frequency. The Gaussian is down to a ninth where they alias.
-    ///
-    /// Unit: 1; derived.
-    pub const ROWS_PER_CUTOFF_PERIOD: f64 = 5.0;
-
-    /// Deviation that position noise may add to the predicted force, over that of the force noise. A coarse encoder hides
-    /// true motion below its step, which the drive's answer to its own steps makes: what cannot be seen is smoothed away.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_POSITION_NOISE_RATIO: f64 = 0.6;
-
-    /// Part of the drive's inertia that may be carried beyond the force sensor or with the surface, and the deviation that
-    /// noise of its acceleration may add, over that of the force noise. The drive shakes the tool by less than a step of the
-    /// encoder; a mass feels that, and seen through the steps it seems lighter than it is.
-    ///
-    /// Unit: 1; chosen.
-    pub const CARRIED_MASS_FRACTION: f64 = 0.05;
-
-    /// See the doc comment above.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_ACCELERATION_NOISE_RATIO: f64 = 0.05;
-
-    /// Share of the sharpest filter that noise allows where nobody says how heavy the drive is.
-    ///
-    /// Unit: 1; chosen.
-    pub const CUTOFF_FRACTION_UNKNOWN_INERTIA: f64 = 0.3;
-
     /// Widths after which the Gaussian ends: 3e-4 of its peak.
     ///
     /// Unit: 1; derived.
     pub const HALF_WIDTH_SIGMAS: f64 = 4.0;
-
-    /// Rows of the analysis that all trials together should have, unless that would blind it.
-    ///
-    /// Unit: rows; chosen.
-    pub const ROW_BUDGET: f64 = 9_000.0;
-
-    /// Rows of all trials together beyond which a quicker clock tells nothing of how sharp the least filter may be.
-    ///
-    /// Unit: rows; chosen.
-    pub const AMPLE_ROWS: f64 = 60_000.0;
-
-    /// Rows below which none are given up for a law to act between two filters.
-    ///
-    /// Unit: rows; chosen.
-    pub const MIN_ROWS_FOR_CASCADE: f64 = 1_000.0;
-
-    /// How much sharper laws may look than the rows that are kept of what they leave.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_CASCADE_RATIO: f64 = 3.0;
-
-    /// Share of a tone's frequency at which the filter that has to show it ends: a third of it passes.
-    ///
-    /// Unit: 1; chosen.
-    pub const CUTOFF_OVER_TONE: f64 = 0.6;
 }
 
 /// Of `signals/mains_tone`.
@@ -329,11 +271,6 @@ pub mod prepare {
 
 /// Of `signals/uniform_trial`.
 pub mod uniform_trial {
-    /// Lengths of a gap until its end is trusted again: what happened in it nobody saw, and a contact remembers.
-    ///
-    /// Unit: 1; chosen.
-    pub const GAP_RECOVERY_LENGTHS: f64 = 3.0;
-
     /// Periods without a row that make a gap.
     ///
     /// Unit: 1; chosen.

@@ -65,12 +65,6 @@ impl<'a> ContactSimulator<'a> {
         Self { contact, terms, borne: 0.0, kept: 0.0 }
     }
 
-    /// Back to the start of a trial.
-    pub fn restart(&mut self) {
-        self.terms.iter_mut().for_each(|term| term.memory = EffectState::default());
-        self.borne = 0.0;
-    }
-
     /// Marks this instant, for [`ContactSimulator::rewind`].
     pub fn keep(&mut self) {
         self.terms.iter_mut().for_each(|term| term.kept = term.memory);
@@ -86,7 +80,7 @@ impl<'a> ContactSimulator<'a> {
     /// The force on the tool at the next instant.
     ///
     /// `time` is in seconds since the trial began, `step` since the last instant (zero at the first); `position` is the
-    /// tool's as the sensor counts it, `filter_width` the width in seconds of the smoothing filter that the motion has passed.
+    /// tool's as the sensor counts it, `smoothing_width` the time in seconds over which corners are smoothed.
     pub fn step(
         &mut self,
         time: f64,
@@ -94,7 +88,7 @@ impl<'a> ContactSimulator<'a> {
         position: f64,
         velocity: f64,
         acceleration: f64,
-        filter_width: f64,
+        smoothing_width: f64,
     ) -> f64 {
         let contact = &self.contact;
         let mut touch = ContactState {
@@ -103,7 +97,7 @@ impl<'a> ContactSimulator<'a> {
             position: position - contact.surface,
             velocity,
             acceleration,
-            filter_width,
+            smoothing_width,
             bilateral: contact.bilateral,
             depth: 0.0,
             rate: 0.0,

@@ -2,10 +2,9 @@
 
 /// One instant of the contact. Depth is positive into the environment, force positive when the tool pushes.
 ///
-/// A recorded motion has passed a smoothing filter, a Gaussian of width `filter_width` seconds. A contact begins at a corner, and
-/// max(0, x) of a smoothed x is not the smoothed max(0, x). For a motion that is straight across the blur the difference
-/// is known in closed form, and depth and rate here contain it: depth is E max(0, x + v tau), tau normal with deviation
-/// `filter_width`. In a simulation the blur is zero and they are what they always were.
+/// A contact begins at a corner, which falls anywhere between two steps of an integrator: smoothed over a part of the step, it does not
+/// show which. Depth is E max(0, x + v tau), tau normal with deviation `smoothing_width`, in closed form for a motion that is
+/// straight across it, and the rate goes with it. Along a recorded motion the width is zero.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactState {
     /// Seconds since the trial began.
@@ -18,15 +17,15 @@ pub struct ContactState {
     pub velocity: f64,
     /// Acceleration of the tool.
     pub acceleration: f64,
-    /// Width of the smoothing filter, s.
-    pub filter_width: f64,
+    /// Time over which corners are smoothed, s: standard deviation; zero along a recording.
+    pub smoothing_width: f64,
     /// Force both ways.
     pub bilateral: bool,
     /// Depth of penetration.
     pub depth: f64,
     /// Rate of the depth.
     pub rate: f64,
-    /// Share of the blur that is in contact, 0 to 1.
+    /// Share of the smoothing width that is in contact, 0 to 1.
     pub inside: f64,
     /// Stiffness K at this instant.
     pub stiffness: f64,
@@ -47,7 +46,7 @@ impl ContactState {
             (self.depth, self.rate, self.inside) = (self.position, self.velocity, 1.0);
             return;
         }
-        let width = self.velocity.abs() * self.filter_width;
+        let width = self.velocity.abs() * self.smoothing_width;
         self.inside = gate(self.position, width);
         self.depth = ramp(self.position, width);
         self.rate = self.velocity * self.inside;
@@ -59,14 +58,14 @@ impl ContactState {
         self.spring + self.damping * self.rate + self.extra
     }
 
-    /// Cuts the force at zero. `before` is what was borne an instant earlier: its slope widens the corner by the blur.
+    /// Cuts the force at zero. `before` is what was borne an instant earlier: its slope makes a width in force of the width in time.
     pub fn cut(&mut self, before: f64) {
         let borne = self.borne();
         self.force = if self.bilateral {
             borne
         } else if self.velocity < 0.0 && self.step > 0.0 && self.inside > 0.0 {
             // The slope of a release is no steeper than the spring's and what the damper adds while the tool leaves.
-            ramp(borne, ((borne - before) / self.step).abs() * self.filter_width)
+            ramp(borne, ((borne - before) / self.step).abs() * self.smoothing_width)
         } else {
             borne.max(0.0)
         };

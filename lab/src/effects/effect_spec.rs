@@ -86,14 +86,8 @@ pub enum Limit {
     ReachedRange,
     /// A frequency that comes round twice within a trial, or it is a drift.
     RepeatedCycles,
-    /// A stiffness that carries the tool: it swings faster than the tool moves, or it carries nothing.
-    ResonanceInBand,
-    /// A pitch that comes round within the way, or it is a slope, and is longer than two steps of the encoder, or it is theirs.
-    RepeatedPitch,
     /// A length of at least a step of the encoder, or it is the encoder's rounding.
     ResolvableLength,
-    /// A speed at which the encoder steps within the filter, or it is the encoder's.
-    MinSpeed,
 }
 
 impl Parameter {

@@ -19,12 +19,6 @@ pub struct ExcitationStats {
     pub duration: f64,
     /// Step of the analysis, s.
     pub step: f64,
-    /// The same for the drive's balance, s.
-    pub drive_step: f64,
-    /// Speed at which the encoder steps once within the filter through which laws see the drive.
-    pub one_step_speed: f64,
-    /// Step of the encoder, m or rad.
-    pub resolution: f64,
     /// Seconds of one raw sample.
     pub sample: f64,
     /// Fitted stiffness.
@@ -41,10 +35,6 @@ pub struct ExcitationStats {
     pub free_span: f64,
     /// Share of a trial in the longest stretch without a free moment, of all trials.
     pub longest_contact: f64,
-    /// Stiffness of the rig file.
-    pub given_stiffness: f64,
-    /// Inertia of the rig file.
-    pub given_inertia: f64,
     /// Whether there is a force channel.
     pub has_force: bool,
     /// Whether there is an effort channel.
@@ -61,13 +51,7 @@ impl ExcitationStats {
     /// noise, and seems to explain it.
     #[must_use]
     pub fn min_link_rate(&self) -> f64 {
-        std::f64::consts::TAU * 0.2 / self.drive_step
-    }
-
-    /// The slowest speed at which an encoder still tells how fast: a quarter of a step within the filter.
-    #[must_use]
-    pub fn slowest(&self) -> f64 {
-        0.25 * self.one_step_speed
+        std::f64::consts::TAU * 0.2 / self.step
     }
 
     /// Whether the tool came back far enough for what differs between in and out to show.
@@ -116,15 +100,6 @@ impl Start {
     }
 }
 
-/// Along what a form repeats.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Abscissa {
-    /// Seconds since the trial began.
-    Time,
-    /// Tool position.
-    Position,
-}
-
 /// Where a form that repeats shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ToneWeight {
@@ -139,29 +114,19 @@ pub enum ToneWeight {
 /// The frequencies among which a form that repeats is searched: the residual's own spectrum says which are worth a trial.
 #[derive(Debug, Clone)]
 pub struct FrequencySearch {
-    /// Along what it repeats.
-    pub abscissa: Abscissa,
     /// Where it shows.
     pub weight: ToneWeight,
-    /// Equally spaced turns a unit of the abscissa: first, spacing, count.
+    /// Equally spaced, Hz: first, spacing, count.
     pub frequencies: Vec<(f64, f64, usize)>,
     /// Size of each part of the wave.
     pub size: f64,
-    /// Waves of one, two... times the frequency that it is made of.
-    pub harmonics: usize,
-    /// Whether the last parameter is the period and not the frequency.
-    pub by_period: bool,
 }
 
 impl FrequencySearch {
     /// Where the search starts at `frequency`.
     #[must_use]
     pub fn start(&self, frequency: f64) -> Start {
-        let last = if self.by_period { frequency.recip() } else { frequency };
-        let parts = 2 * self.harmonics;
-        let mut values = vec![self.size; parts];
-        values.push(last);
-        Start { values, linear_parameters: (0..parts).collect() }
+        Start::sized(&[self.size, self.size, frequency], &[0, 1])
     }
 }
 

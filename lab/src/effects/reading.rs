@@ -1,6 +1,6 @@
 //! The force sensor over a whole trial, as effects see it and change it.
 
-use super::cubic_segment::CubicSegment;
+use super::first_order_lag::lagged;
 
 /// What the force sensor shows, sample by sample at equal steps.
 #[derive(Debug)]
@@ -9,10 +9,8 @@ pub struct Reading<'a> {
     pub start: f64,
     /// Seconds from one sample to the next.
     pub step: f64,
-    /// Width of the smoothing filter that the samples have passed, s; zero in a simulation.
+    /// Width of the smoothing filter that what the sensor adds has passed, s: standard deviation; zero in a simulation.
     pub filter_width: f64,
-    /// The same of what the sensor adds by itself: zero where rows of a sensor are made of a smoothed force.
-    pub added_filter_width: f64,
     /// Acceleration of the tool.
     pub acceleration: &'a [f64],
     /// In: the force at the sensor. Out: its reading.
@@ -43,35 +41,23 @@ impl Reading<'_> {
         }
     }
 
-    /// A first-order low-pass of time constant `lag`, exact for a force that is a cubic between samples; in a simulation, where
-    /// it has corners and samples are many, for one that is straight.
+    /// A first-order low-pass of time constant `lag`, exact for a force that is straight between samples.
     pub fn low_pass(&mut self, lag: f64) {
         if lag <= 0.0 || self.force.is_empty() {
             return;
         }
         let ratio = self.step / lag;
-        let source = self.force.to_vec();
-        let last = source.len() - 1;
-        // Changes within a sample's step, to the fourth order.
-        let slope = |at: usize| {
-            let near = |before: usize, after: usize| source[(at + after).min(last)] - source[at.saturating_sub(before)];
-            (8.0 * near(1, 1) - near(2, 2)) / 12.0
-        };
-        let mut state = source[0];
-        for at in 1..source.len() {
-            let course = if self.filter_width > 0.0 {
-                CubicSegment::smooth([source[at - 1], slope(at - 1)], [source[at], slope(at)], 1.0)
-            } else {
-                CubicSegment::straight(source[at - 1], source[at])
-            };
-            state = course.lagged(state, ratio);
-            self.force[at] = state;
+        let mut state = self.force[0];
+        let mut before = state;
+        for force in &mut self.force[1..] {
+            state = lagged(state, [before, *force], ratio);
+            before = std::mem::replace(force, state);
         }
     }
 
     /// What the smoothing filter leaves of a sine of that frequency that the sensor adds.
     #[must_use]
     pub fn passes(&self, frequency: f64) -> f64 {
-        (-0.5 * (std::f64::consts::TAU * frequency * self.added_filter_width).powi(2)).exp()
+        (-0.5 * (std::f64::consts::TAU * frequency * self.filter_width).powi(2)).exp()
     }
 }

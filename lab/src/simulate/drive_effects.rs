@@ -69,23 +69,12 @@ impl<'a> DriveEffects<'a> {
     /// A tool that stands still is held by friction as long as friction can: its acceleration is then exactly zero.
     pub fn pull(&mut self, at: Instant, force: f64) -> DriveResponse {
         let mut push = DriveState {
-            time: at.time,
             step: at.step,
             position: at.position,
             velocity: at.velocity,
-            acceleration: 0.0,
-            jerk: 0.0,
-            snap: 0.0,
-            crackle: 0.0,
-            filter_width: 0.0,
-            velocity_noise: 0.0,
-            at_rest: f64::from(at.velocity == 0.0),
+            at_rest: at.velocity == 0.0,
             force,
-            force_rate: 0.0,
-            force_second_derivative: 0.0,
-            force_third_derivative: 0.0,
             effort: at.effort,
-            effort_rate: 0.0,
             inertia: self.drive.inertia,
             viscous: self.drive.viscous,
             resistance: 0.0,
@@ -105,7 +94,7 @@ impl<'a> DriveEffects<'a> {
         let rest = push.balance_residual();
         let has_friction = rest != free;
         let size = push.effort.abs() + push.force.abs() + push.resistance.abs();
-        let is_held = has_friction && push.at_rest > 0.0 && rest.abs() <= BALANCE_TOLERANCE * size;
+        let is_held = has_friction && push.at_rest && rest.abs() <= BALANCE_TOLERANCE * size;
         DriveResponse { acceleration: if is_held { 0.0 } else { rest / push.inertia }, has_friction }
     }
 }

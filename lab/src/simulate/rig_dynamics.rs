@@ -5,7 +5,7 @@
 //! Effects have memories, so that an instant can be walked through only once, in the order of time, and hold corners
 //! anywhere. Therefore no Runge-Kutta: one evaluation a step, in its middle, where the state is had from the last
 //! acceleration. It is of order two where the motion is smooth. A corner of the contact is spread over the step that
-//! crosses it by the blur of the contact law, and costs no more than the rest. The effect of zero size comes out as the
+//! crosses it by the smoothing of the contact law, and costs no more than the rest. The effect of zero size comes out as the
 //! nominal plant to some parts in a hundred thousand (a test holds it to ten).
 
 use crate::effects::{ActiveEffect, ContactSimulator, Place};
@@ -17,8 +17,8 @@ use super::drive_effects::{DriveEffects, DriveResponse, Instant};
 /// Steps per fastest time constant.
 const STEPS_PER_TIME_CONSTANT: f64 = 20.0;
 
-/// Deviation of the contact law's blur in steps: the least at which a corner's place between two steps does not show.
-const CONTACT_BLUR_STEPS: f64 = 0.5;
+/// Time over which corners of the contact law are smoothed, in steps: the least at which a corner's place between two steps does not show.
+const CONTACT_SMOOTHING_STEPS: f64 = 0.5;
 
 /// Refinements of an acceleration that the contact force depends on; two where that is linear.
 const MAX_ITERATIONS: usize = 40;
@@ -137,7 +137,7 @@ impl<'a> RigDynamics<'a> {
         let position = state.position + 0.25 * step * (state.velocity + velocity);
         let time = self.time + 0.5 * step;
         let at = Instant { time, step: 0.5 * (self.step + step), position, velocity, effort };
-        let (_, pull) = self.balance(at, CONTACT_BLUR_STEPS * step);
+        let (_, pull) = self.balance(at, CONTACT_SMOOTHING_STEPS * step);
         (self.step, self.last) = (step, pull);
         let end = state.velocity + step * pull.acceleration;
         if pull.has_friction && end * state.velocity < 0.0 {
@@ -152,14 +152,14 @@ impl<'a> RigDynamics<'a> {
     ///
     /// The force may depend on the acceleration (a mass that is carried along): a = p(F(a)), p falling with F and F
     /// rising with a, has one solution, between zero and p(F(0)).
-    fn balance(&mut self, at: Instant, filter_width: f64) -> (f64, DriveResponse) {
+    fn balance(&mut self, at: Instant, smoothing_width: f64) -> (f64, DriveResponse) {
         if self.along.is_none() {
             return (0.0, self.chain.pull(at, 0.0));
         }
         self.save();
-        let (without, first) = self.attempt(at, 0.0, filter_width);
+        let (without, first) = self.attempt(at, 0.0, smoothing_width);
         self.rewind();
-        let (force, pull) = self.attempt(at, first.acceleration, filter_width);
+        let (force, pull) = self.attempt(at, first.acceleration, smoothing_width);
         if force == without {
             return (force, pull);
         }
@@ -170,7 +170,7 @@ impl<'a> RigDynamics<'a> {
         for _ in 0..MAX_ITERATIONS {
             let guess = high - high_rest * (high - low) / (high_rest - low_rest);
             self.rewind();
-            found = self.attempt(at, guess, filter_width);
+            found = self.attempt(at, guess, smoothing_width);
             let rest = guess - found.1.acceleration;
             if rest.abs() <= small || !guess.is_finite() {
                 break;
@@ -186,9 +186,9 @@ impl<'a> RigDynamics<'a> {
         found
     }
 
-    fn attempt(&mut self, at: Instant, acceleration: f64, filter_width: f64) -> (f64, DriveResponse) {
+    fn attempt(&mut self, at: Instant, acceleration: f64, smoothing_width: f64) -> (f64, DriveResponse) {
         let step = |along: &mut ContactSimulator<'_>| {
-            along.step(at.time, at.step, at.position, at.velocity, acceleration, filter_width)
+            along.step(at.time, at.step, at.position, at.velocity, acceleration, smoothing_width)
         };
         let force = self.along.as_mut().map_or(0.0, step);
         (force, self.chain.pull(at, force))

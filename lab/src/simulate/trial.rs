@@ -209,14 +209,7 @@ impl<'a> Run<'a> {
         actives.retain(|active| active.effect.spec().place == Place::Sensor);
         actives.sort_by_key(crate::effects::ActiveEffect::stage);
         for active in actives {
-            let mut reading = Reading {
-                start: 0.0,
-                step,
-                filter_width: 0.0,
-                added_filter_width: 0.0,
-                acceleration: &self.acceleration,
-                force,
-            };
+            let mut reading = Reading { start: 0.0, step, filter_width: 0.0, acceleration: &self.acceleration, force };
             active.effect.act_on_reading(active.form, active.values, &mut reading);
         }
         force.iter_mut().for_each(|force| *force = self.load_cell.read(*force, &mut self.rng));

@@ -219,16 +219,15 @@ impl ContactModel {
 
     fn term_range(&self, parameter: &Parameter, value: f64) -> Range {
         let scales = &self.scales;
-        let (mut low, mut high) = (parameter.low, parameter.high);
+        let (mut low, high) = (parameter.low, parameter.high);
         match parameter.limit {
             Limit::ResolvableTime => low = low.max(2.0 * scales.step_s),
             Limit::ReachedRange => {
                 low = low.max(0.15 * scales.force).max(scales.reached_force - self.force_zero.abs());
             }
             Limit::RepeatedCycles => low = low.max(1.8 / scales.duration_s),
-            Limit::RepeatedPitch => (low, high) = (low.max(2.0 * scales.resolution), high.min(scales.travel() / 1.4)),
             Limit::ResolvableLength => low = low.max(scales.resolution),
-            Limit::BoundsOnly | Limit::ResonanceInBand | Limit::MinSpeed => {}
+            Limit::BoundsOnly => {}
         }
         let by_factors = parameter.low >= 0.0 && parameter.high.is_infinite() && value > 0.0;
         let size = if value == 0.0 { 1e-3 } else { value.abs() };
@@ -287,8 +286,7 @@ impl ContactModel {
             let mut reading = Reading {
                 start: trial.time.first().copied().unwrap_or(0.0),
                 step: trial.step_s,
-                filter_width: 0.0,
-                added_filter_width: width,
+                filter_width: width,
                 acceleration: &trial.acceleration,
                 force,
             };

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::fit::{Data, Fit};
-use crate::effects::{Abscissa, FrequencySearch, Start, ToneWeight};
+use crate::effects::{FrequencySearch, Start, ToneWeight};
 
 /// Frequencies that are tried.
 const MOST_FREQUENCIES: usize = 4;
@@ -15,7 +15,7 @@ const LARGEST_OWN_SHARE: f64 = 0.01;
 #[must_use]
 pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f64]) -> Vec<Start> {
     let rows = Rows::of(search, data, fit, rest);
-    let own = Rows::of_motion(search, data);
+    let own = Rows::of_motion(data);
     let mut heard: Vec<(f64, f64)> = Vec::new();
     for &(first, apart, count) in &search.frequencies {
         let frequencies: Vec<f64> = (0..count).map(|at| first + apart * at as f64).collect();
@@ -31,7 +31,7 @@ pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f
     heard.iter().map(|(_, frequency)| search.start(*frequency)).collect()
 }
 
-/// Abscissa, weight and residual of each row that counts, a list a trial; along a way all trials share one phase.
+/// Time, weight and residual of each row that counts, a list a trial: each has a phase of its own.
 struct Rows(Vec<Vec<(f64, f64, f64)>>);
 
 impl Rows {
@@ -47,20 +47,15 @@ impl Rows {
                     ToneWeight::Inside => f64::from(inside),
                     ToneWeight::Depth => f64::from(inside) * depth,
                 };
-                let along = if search.abscissa == Abscissa::Time { trial.time[row] } else { trial.position[row] };
-                (along, weight * data.weights[number][row], rest[starts[number] + row])
+                (trial.time[row], weight * data.weights[number][row], rest[starts[number] + row])
             };
             (0..trial.len()).map(row).filter(|(_, weight, _)| *weight != 0.0).collect::<Vec<_>>()
         };
-        let each = (0..data.trials.len()).map(trial);
-        Self(if search.abscissa == Abscissa::Time { each.collect() } else { vec![each.flatten().collect()] })
+        Self((0..data.trials.len()).map(trial).collect())
     }
 
-    /// The positions themselves, about their mean; none along the way.
-    fn of_motion(search: &FrequencySearch, data: &Data<'_>) -> Self {
-        if search.abscissa != Abscissa::Time {
-            return Self(Vec::new());
-        }
+    /// The positions themselves, about their mean.
+    fn of_motion(data: &Data<'_>) -> Self {
         let trial = |trial: &super::trial::ContactTrial| {
             let mean = trial.position.iter().sum::<f64>() / trial.len().max(1) as f64;
             trial.time.iter().zip(&trial.position).map(|(time, position)| (*time, 1.0, position - mean)).collect()
@@ -78,8 +73,8 @@ impl Rows {
         let pulse = std::f64::consts::TAU * frequency;
         let trial = |rows: &Vec<(f64, f64, f64)>| {
             let (mut sine, mut cosine, mut weight) = (0.0, 0.0, 0.0);
-            for (along, own, rest) in rows {
-                let (s, c) = (pulse * along).sin_cos();
+            for (time, own, rest) in rows {
+                let (s, c) = (pulse * time).sin_cos();
                 sine += own * s * rest;
                 cosine += own * c * rest;
                 weight += own * own;

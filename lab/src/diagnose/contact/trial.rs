@@ -1,6 +1,7 @@
 //! A recording as the contact's model sees it: the smoothed motion of the tool and the force beside it.
 
 use super::motion::{self, Motion};
+use crate::diagnose::signals::outliers::interpolate_outliers;
 use crate::recording::Recording;
 use crate::sensors::{Channel, DITHER_FRACTION, Figures};
 
@@ -35,8 +36,6 @@ pub struct ContactTrial {
     pub force_variance: f64,
     /// Whether a row is a measurement.
     pub counts: Vec<bool>,
-    /// Seconds since the trial began at which single readings leap away and back: no measurements.
-    pub dropouts_s: Vec<f64>,
     /// What the sensors leave.
     pub figures: Figures,
 }
@@ -48,11 +47,11 @@ impl ContactTrial {
         let (mut force, mut position) = (recording.force.clone()?, recording.position.clone());
         let channel = figures.force?;
         let mut counts = vec![true; force.len()];
-        mend(&recording.time, &mut position, &mut counts);
-        mend(&recording.time, &mut force, &mut counts);
+        for column in [&mut position, &mut force] {
+            interpolate_outliers(&recording.time, column).into_iter().for_each(|row| counts[row] = false);
+        }
         let origin = recording.time.first().copied()?;
         let since: Vec<f64> = recording.time.iter().map(|time| time - origin).collect();
-        let dropouts_s = counts.iter().zip(&since).filter(|(counts, _)| !**counts).map(|(_, time)| *time).collect();
         let noise = figures.position.noise.max(figures.position.resolution / 12f64.sqrt());
         let mut smooth = motion::smoothed(&since, &position, noise * noise);
         stuck_rounding(&mut smooth, figures.position, recording.period());
@@ -80,7 +79,6 @@ impl ContactTrial {
             force: mean(&force),
             force_variance: if coarse { force_variance.max(rounding * rounding) } else { force_variance },
             counts: counts.chunks_exact(every).map(|rows| rows.iter().all(|counts| *counts)).collect(),
-            dropouts_s,
             figures,
         })
     }
@@ -118,26 +116,5 @@ fn stuck_rounding(motion: &mut Motion, encoder: Channel, step_s: f64) {
         let part = *variance / all;
         let rows_a_step = (encoder.resolution / (velocity.abs() * step_s).max(f64::MIN_POSITIVE)).max(1.0);
         *variance = part * shake + (part * rows_a_step).min(1.0) * rounding;
-    }
-}
-
-/// Replaces single readings that leap away from both neighbours by more than the whole remaining range of the channel.
-fn mend(time: &[f64], values: &mut [f64], counts: &mut [bool]) {
-    if values.len() < 3 {
-        return;
-    }
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let (low, high) = (sorted[sorted.len() / 100], sorted[sorted.len() - 1 - sorted.len() / 100]);
-    let range = high - low;
-    for at in 1..values.len() - 1 {
-        let (before, after) = (values[at - 1], values[at + 1]);
-        let leap = (values[at] - before).abs().min((values[at] - after).abs());
-        let beyond = (values[at] - high).max(low - values[at]);
-        if range > 0.0 && leap > range && beyond > 0.5 * range {
-            let part = (time[at] - time[at - 1]) / (time[at + 1] - time[at - 1]);
-            values[at] = before + part * (after - before);
-            counts[at] = false;
-        }
     }
 }

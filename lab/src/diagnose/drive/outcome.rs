@@ -45,8 +45,6 @@ pub struct NamedTerm {
     pub held_out_share: f64,
     /// Likelihood-ratio test of it, Bonferroni over all terms tried.
     pub p_value: f64,
-    /// What is missing without it, N or N m in root mean square on held-out rows.
-    pub without: f64,
 }
 
 /// A set of terms that the recordings do not tell from the answer.
@@ -90,8 +88,6 @@ pub struct Outcome {
     pub trials: Vec<DriveTrial>,
     /// How it stands.
     pub finding: Finding,
-    /// The refitted nominal law.
-    pub nominal: Fit,
     /// The law with its terms.
     pub chosen: Fit,
     /// 95 % interval of each of its values.
@@ -268,7 +264,6 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     Outcome {
         trials: Vec::new(),
         finding,
-        nominal: search.nominal.clone(),
         intervals,
         named,
         alternatives,
@@ -316,7 +311,6 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
             p_value: (tried * likelihood_ratio(&fit, less)).min(1.0),
-            without: *left,
         });
         let named = named.collect();
         return (fit, held, named);

@@ -95,15 +95,12 @@ mod tests {
         });
         let force: Vec<f64> = force.collect();
         UniformTrial {
-            name: "noise".to_owned(),
             origin: 0.0,
             period: 1.0 / RATE,
             position: vec![0.0; force.len()],
-            good: vec![true; force.len()],
             force: Some(force),
             effort: None,
             figures: Figures { position: Channel { resolution: 0.0, noise: 1.0 }, force: None, effort: None },
-            hum: None,
             dropouts: Vec::new(),
             gaps: Vec::new(),
         }

@@ -30,7 +30,7 @@ fn without_mains_tone(rig: &Rig, raw: UniformTrial, trial: &Recording) -> Unifor
     if let Some(force) = &mut quiet.force {
         force.iter_mut().zip(&trial.time).for_each(|(force, time)| *force -= tone.at(time - raw.origin));
     }
-    UniformTrial { figures: Figures::of(rig, &quiet), hum: Some(tone.frequency), ..raw }
+    UniformTrial { figures: Figures::of(rig, &quiet), ..raw }
 }
 
 /// The longest period of `trials`, s.

@@ -106,7 +106,7 @@ impl Effect for LayeredStiffness {
             touch.spring += values[0] * beyond.copysign(touch.depth);
             return;
         }
-        let width = touch.velocity.abs() * touch.filter_width;
+        let width = touch.velocity.abs() * touch.smoothing_width;
         let beyond = if touch.bilateral {
             touch.position.signum() * ramp(touch.position.abs() - values[1], width)
         } else {

@@ -54,7 +54,7 @@ impl Effect for LostMotion {
             state[3] = state[0];
         }
         state[4] = touch.velocity;
-        if touch.filter_width > 0.0 {
+        if touch.smoothing_width > 0.0 {
             follow(half, state[3], touch);
             return;
         }
@@ -66,10 +66,10 @@ impl Effect for LostMotion {
     }
 }
 
-/// A tip that rested at `rest` until the play of `half` either way was taken up, as a smoothed motion shows it: the velocity
-/// does not jump there but rises over the blur. A blur longer than the play takes is all of the play, so that none is off.
+/// A tip that rested at `rest` until the play of `half` either way was taken up, its corner smoothed: the velocity does not
+/// jump there but rises over the width. A width longer than the play takes is all of the play, so that none is off.
 fn follow(half: f64, rest: f64, touch: &mut ContactState) {
-    let width = (touch.velocity.abs() * touch.filter_width).min(half);
+    let width = (touch.velocity.abs() * touch.smoothing_width).min(half);
     let way = touch.velocity.signum();
     let taken = way * (touch.position - rest) - half;
     touch.position = rest + way * ramp(taken, width);

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter,
-    Place, Stage, Start, ToneWeight,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter, Place,
+    Stage, Start, ToneWeight,
 };
 use crate::rig::Word;
 
@@ -65,12 +65,9 @@ impl Effect for SurfaceMotion {
         // Half a turn a trial apart, up to the shaking of a table or what the rows resolve: nothing falls between two of them.
         let most = (30.0 * scene.duration).min(0.1 * scene.duration / scene.step).clamp(2.0, 1000.0);
         (form == 0 && scene.separates_time_from_depth()).then(|| FrequencySearch {
-            abscissa: Abscissa::Time,
             weight: ToneWeight::Inside,
             frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, (2.0 * most) as usize)],
             size: 0.01 * scene.depth,
-            harmonics: 1,
-            by_period: false,
         })
     }
 

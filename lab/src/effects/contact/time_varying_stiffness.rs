@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter,
-    Place, Stage, Start, ToneWeight, gate, geometric, linear,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter, Place,
+    Stage, Start, ToneWeight, gate, geometric, linear,
 };
 use crate::rig::Word;
 
@@ -89,12 +89,9 @@ impl Effect for TimeVaryingStiffness {
     fn frequency_search(&self, form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
         // Below one turn a trial it is a drift.
         (form == 3 && scene.separates_time_from_depth()).then(|| FrequencySearch {
-            abscissa: Abscissa::Time,
             weight: ToneWeight::Depth,
             frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, 60)],
             size: 0.1,
-            harmonics: 1,
-            by_period: false,
         })
     }
 
@@ -105,7 +102,7 @@ impl Effect for TimeVaryingStiffness {
         touch.stiffness *= 1.0
             + match form {
                 0 => values[0] * time,
-                1 => values[0] * gate(time - values[1], touch.filter_width),
+                1 => values[0] * gate(time - values[1], touch.smoothing_width),
                 2 => -values[0] * (-time / values[1].max(f64::MIN_POSITIVE)).exp_m1(),
                 4 => values[0] * (-state[0] / values[1].max(f64::MIN_POSITIVE)).exp(),
                 _ => {

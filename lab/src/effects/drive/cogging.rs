@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, FrequencySearch, Limit, Parameter,
-    Place, Stage, Start, ToneWeight,
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
 };
 use crate::rig::Word;
 
@@ -16,8 +15,7 @@ const fn part(name: &'static str) -> Parameter {
 }
 
 const PITCH: Parameter =
-    Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY)
-        .within(Limit::RepeatedPitch);
+    Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY);
 
 static SPEC: EffectSpec = EffectSpec {
     name: "cogging",
@@ -51,30 +49,12 @@ impl Effect for Cogging {
         Vec::new()
     }
 
-    fn frequency_search(&self, form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
-        let way = scene.travel.1 - scene.travel.0;
-        // Half a turn over the whole way apart. Below one and a half turns it is a slope, and no pattern has been seen. A pitch of
-        // less than two steps of the encoder is not seen either: what its steps are wrong by repeats with each of them.
-        let finest = (way / scene.resolution).clamp(0.0, f64::from(u32::MAX)) as usize;
-        let count = finest.saturating_sub(2).min(120);
-        (way > 0.0 && count > 0).then(|| FrequencySearch {
-            abscissa: Abscissa::Position,
-            weight: ToneWeight::Even,
-            frequencies: vec![(1.5 / way, 0.5 / way, count)],
-            size: 0.02 * scene.effort,
-            harmonics: form + 1,
-            by_period: true,
-        })
-    }
-
     fn act_on_drive(&self, _form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
         let Some((pitch, parts)) = values.split_last() else { return };
         for (at, wave) in parts.chunks_exact(2).enumerate() {
             let turn = TAU * (at + 1) as f64 / pitch.max(f64::MIN_POSITIVE);
             let (sine, cosine) = (turn * push.position).sin_cos();
-            // What the smoothing filter leaves of a ripple that passes at this speed.
-            let left = (-0.5 * (turn * push.velocity * push.filter_width).powi(2)).exp();
-            push.resistance += left * (wave[0] * sine + wave[1] * cosine);
+            push.resistance += wave[0] * sine + wave[1] * cosine;
         }
     }
 }

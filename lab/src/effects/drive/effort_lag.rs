@@ -2,6 +2,7 @@
 
 use crate::effects::{
     DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
+    lagged,
 };
 use crate::rig::Word;
 
@@ -34,18 +35,17 @@ impl Effect for EffortLag {
     }
 
     fn act_on_drive(&self, _form: usize, values: &[f64], state: &mut EffectState, push: &mut DriveState) {
-        // state: effort at the tool, command an instant ago, its rate, whether they are known.
+        // state: effort at the tool, command an instant ago, whether they are known.
         let time = values[0];
-        if state[3] == 0.0 || time <= 0.0 {
-            (state[0], state[1], state[2], state[3]) = (push.effort, push.effort, push.effort_rate, 1.0);
+        if state[2] == 0.0 || time <= 0.0 {
+            (state[0], state[1], state[2]) = (push.effort, push.effort, 1.0);
             return;
         }
         let ratio = push.step / time;
         if ratio > 0.0 {
-            state[0] = push.effort_since([state[1], state[2]]).lagged(state[0], ratio);
+            state[0] = lagged(state[0], [state[1], push.effort], ratio);
         }
-        (state[1], state[2]) = (push.effort, push.effort_rate);
-        push.effort_rate = (push.effort - state[0]) / time;
+        state[1] = push.effort;
         push.effort = state[0];
     }
 }

@@ -2,8 +2,7 @@
 
 use super::two_mass_link::TwoMassLink;
 use crate::effects::{
-    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
-    geometric,
+    DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
 };
 use crate::rig::Word;
 
@@ -16,8 +15,7 @@ const LINK_STIFFNESS: Parameter = Parameter::new(
     "of cable, belt or gear, at the tool",
     0.0,
     f64::INFINITY,
-)
-.within(Limit::ResonanceInBand);
+);
 
 const MOTOR_SHARE: Parameter =
     Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8);
@@ -82,18 +80,6 @@ impl Effect for TransmissionCompliance {
     fn act_on_drive(&self, form: usize, values: &[f64], state: &mut EffectState, push: &mut DriveState) {
         let motor = values[1] * push.inertia;
         let viscous = if form == 0 { 0.0 } else { values[3] * push.viscous };
-        if push.filter_width > 0.0 {
-            // The motor leads the tool by T / k, later by c / k, and T is what the tool's side bears: its acceleration is seen,
-            // not followed. A motor that is followed swings at its own rate with the noise of the tool's position.
-            let (tool, rest) = (push.inertia - motor, push.viscous - viscous);
-            let rise = tool * push.jerk + rest * push.acceleration + push.force_rate;
-            let bend = tool * push.snap + rest * push.jerk + push.force_second_derivative;
-            let jerk = tool * push.crackle + rest * push.snap + push.force_third_derivative;
-            let softness = values[0].max(f64::MIN_POSITIVE).recip();
-            let late = 2.0 * values[2] * (motor * softness).max(0.0).sqrt();
-            push.resistance += softness * (motor * (bend - late * jerk) + viscous * (rise - late * bend));
-            return;
-        }
         let damping = 2.0 * values[2] * (values[0] * motor).max(0.0).sqrt();
         TwoMassLink { stiffness: values[0], damping, inertia: motor, viscous, gap: 0.0 }.carry(state, push);
     }

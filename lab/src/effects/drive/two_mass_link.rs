@@ -1,6 +1,7 @@
 //! What joins motor and tool, where something gives or plays between them, followed step by step.
 
-use crate::effects::{CubicSegment, DriveState, EffectState};
+use crate::effects::cubic_segment::CubicSegment;
+use crate::effects::{DriveState, EffectState};
 
 /// Motor and tool, coupled by a spring with a gap.
 pub struct TwoMassLink {
@@ -22,7 +23,7 @@ const MAX_SUBSTEPS: f64 = 64.0;
 impl TwoMassLink {
     /// Runs the motor's side over the last step and replaces the effort by what the link transmits.
     pub fn carry(&self, state: &mut EffectState, push: &mut DriveState) {
-        // state: motor position, its velocity, tool position, tool velocity, effort an instant ago, its rate, whether known.
+        // state: motor position, its velocity, tool position, tool velocity, effort an instant ago, whether known.
         if self.stiffness <= 0.0 || self.inertia <= 0.0 {
             return;
         }
@@ -32,28 +33,19 @@ impl TwoMassLink {
         }
         push.inertia -= self.inertia;
         push.viscous -= self.viscous;
-        if state[6] == 0.0 {
+        if state[5] == 0.0 {
             let stretch = push.effort / self.stiffness;
             let lead = stretch + 0.5 * self.gap * stretch.signum();
             let (position, velocity) = (push.position, push.velocity);
-            state[..7].copy_from_slice(&[
-                position + lead,
-                velocity,
-                position,
-                velocity,
-                push.effort,
-                push.effort_rate,
-                1.0,
-            ]);
+            state[..6].copy_from_slice(&[position + lead, velocity, position, velocity, push.effort, 1.0]);
         }
-        let [mut motor, mut speed, tool, tool_speed, effort, effort_rate, ..] = **state;
+        let [mut motor, mut speed, tool, tool_speed, effort, ..] = **state;
         let part = steps.max(1.0).recip();
         let span = push.step * part;
         let lightness = span / self.inertia;
         let mix = |from: f64, to: f64, part: f64| from + part * (to - from);
         // The tool between two samples, by position and rate at both: a chord would leave k step^2 / 12 of false inertia.
-        let way = CubicSegment::smooth([tool, tool_speed], [push.position, push.velocity], push.step);
-        let effort = push.effort_since([effort, effort_rate]);
+        let way = CubicSegment::hermite([tool, tool_speed], [push.position, push.velocity], push.step);
         for step in 0..steps as usize {
             let start = step as f64 * part;
             let middle = start + 0.5 * part;
@@ -61,12 +53,11 @@ impl TwoMassLink {
             // motion would be pushed on by k span / 2 times its speed.
             motor += 0.5 * span * speed;
             let pull = self.pull(motor - way.at(middle), speed - mix(tool_speed, push.velocity, start));
-            speed += lightness * (effort.at(middle) - pull - self.viscous * speed);
+            speed += lightness * (mix(effort, push.effort, middle) - pull - self.viscous * speed);
             motor += 0.5 * span * speed;
         }
-        state[..7].copy_from_slice(&[motor, speed, push.position, push.velocity, push.effort, push.effort_rate, 1.0]);
+        state[..6].copy_from_slice(&[motor, speed, push.position, push.velocity, push.effort, 1.0]);
         push.effort = self.pull(motor - push.position, speed - push.velocity);
-        push.effort_rate = self.stiffness * (speed - push.velocity);
     }
 
     fn fastest(&self) -> f64 {

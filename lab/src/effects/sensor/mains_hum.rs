@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::effects::{
-    Abscissa, Effect, EffectSpec, ExcitationStats, Form, FrequencySearch, Parameter, Place, Reading, Stage, Start,
-    ToneWeight,
+    Effect, EffectSpec, ExcitationStats, Form, FrequencySearch, Parameter, Place, Reading, Stage, Start, ToneWeight,
 };
 use crate::rig::Word;
 
@@ -52,14 +51,7 @@ impl Effect for MainsHum {
         let frequencies: Vec<_> =
             [50.0, 60.0].into_iter().filter(|mains| *mains < 0.42 / scene.step).map(band).collect();
         let size = 0.01 * scene.force;
-        (!frequencies.is_empty()).then_some(FrequencySearch {
-            abscissa: Abscissa::Time,
-            weight: ToneWeight::Even,
-            frequencies,
-            size,
-            harmonics: 1,
-            by_period: false,
-        })
+        (!frequencies.is_empty()).then_some(FrequencySearch { weight: ToneWeight::Even, frequencies, size })
     }
 
     fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
