@@ -215,3 +215,26 @@ impl Scale {
         (code as f32 - self.zero) * self.force
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_force_is_counted_from_its_zero() {
+        let scale = Scale { position: 0.5, force: 0.25, zero: 100.0 };
+        assert_eq!([scale.force(100), scale.force(104), scale.force(-100)], [0.0, 1.0, -50.0]);
+        assert_eq!([scale.position(0), scale.position(-3)], [0.0, -1.5]);
+    }
+
+    #[test]
+    fn a_surface_and_a_travel_are_accepted_up_to_their_limits() {
+        let (d, far) = (Calibration::DEFAULT, 1 << 23);
+        let accepted = |calibration: Calibration| calibration.check().is_ok();
+        assert!([far, -far].into_iter().all(|surface| accepted(Calibration { surface, ..d })));
+        assert!([far + 1, -far - 1].into_iter().all(|surface| !accepted(Calibration { surface, ..d })));
+        let travels = [[0.0, 0.0], [f32::NEG_INFINITY, 0.0], [0.0, f32::INFINITY], [0.1, 0.0]];
+        assert!(travels.into_iter().all(|travel| !accepted(Calibration { travel, ..d })));
+        assert!(accepted(Calibration { travel: [0.0, 1e-6], ..d }));
+    }
+}

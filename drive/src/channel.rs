@@ -39,3 +39,28 @@ impl PlausibilityMonitor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reading_is_stuck_from_its_limit_on_and_never_where_there_is_none() {
+        let stuck = |stuck_after| {
+            let mut monitor = PlausibilityMonitor::default();
+            [(); 5].map(|()| monitor.take(7, 1, stuck_after, 0).stuck)
+        };
+        assert_eq!(stuck(0), [false; 5]);
+        assert_eq!(stuck(1), [false, true, true, true, true]);
+        assert_eq!(stuck(3), [false, false, false, true, true]);
+    }
+
+    #[test]
+    fn a_reading_may_move_by_its_step_a_tick_and_no_further() {
+        for (elapsed, way, jumped) in [(1, 10, false), (1, 11, true), (1, -11, true), (3, 30, false), (3, -31, true)] {
+            let mut monitor = PlausibilityMonitor::default();
+            monitor.take(100, 1, 0, 10);
+            assert_eq!(monitor.take(100 + way, elapsed, 0, 10).jumped, jumped, "{way} in {elapsed}");
+        }
+    }
+}

@@ -63,3 +63,24 @@ impl Counters {
         [&self.ticks, &self.used, &self.restarts, &self.refused_tares].map(|counter| counter.load(Ordering::Relaxed))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tick_counts_its_own_faults_and_no_other() {
+        let counters = Counters::new();
+        assert_eq!(counters.faults(), [0; Faults::COUNT]);
+        counters.tick(Faults::FORCE_RANGE | Faults::CLOCK, false);
+        counters.tick(Faults::FORCE_RANGE, true);
+        counters.tick(Faults::empty(), true);
+        let expected = core::array::from_fn(|bit| match Faults::from_bits_retain(1 << bit) {
+            Faults::FORCE_RANGE => 2,
+            Faults::CLOCK => 1,
+            _ => 0,
+        });
+        assert_eq!(counters.faults(), expected);
+        assert_eq!(counters.others(), [3, 2, 0, 0]);
+    }
+}

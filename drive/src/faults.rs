@@ -85,3 +85,16 @@ impl Faults {
         self.iter_names().next().map_or("none", |(name, _)| name)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_fault_has_the_name_of_its_constant() {
+        assert_eq!(Faults::POSITION_TIMEOUT.name(), "POSITION_TIMEOUT");
+        assert_eq!((Faults::CLOCK | Faults::CRASH).name(), "CRASH", "the first of several");
+        assert_eq!(Faults::empty().name(), "none");
+        assert_eq!(Faults::all().iter().count(), Faults::COUNT);
+    }
+}

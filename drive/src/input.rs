@@ -83,3 +83,26 @@ impl From<Input> for [u8; INPUT_BYTES] {
         [a0, a1, d0, d1, f0, f1, f2, f3, input.elapsed, input.status.bits()]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_condition_of_a_tick_is_its_fault() {
+        let sound = Input { status: InputStatus::empty(), ..Input::NOTHING };
+        assert_eq!(sound.faults(), Faults::empty());
+        for (status, fault) in [
+            (InputStatus::NO_POSITION, Faults::POSITION_TIMEOUT),
+            (InputStatus::NO_FORCE, Faults::FORCE_TIMEOUT),
+            (InputStatus::NO_SAMPLE, Faults::SAMPLE_LOST),
+            (InputStatus::BROWN_OUT, Faults::BROWN_OUT),
+            (InputStatus::LINK_GONE, Faults::LINK_GONE),
+            (InputStatus::OVERRUN, Faults::OVERRUN),
+        ] {
+            assert_eq!(Input { status, ..sound }.faults(), fault);
+            // A tick that was lost before it is a lost sample beside whatever else is wrong.
+            assert_eq!(Input { status, elapsed: 2, ..sound }.faults(), fault | Faults::SAMPLE_LOST);
+        }
+    }
+}

@@ -31,3 +31,18 @@ impl Quadrature {
         self.position
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_closure_that_reads_a_timer_is_a_counter() {
+        let mut timer = 40_000_u16;
+        let mut read = || {
+            timer = timer.wrapping_add(30_000);
+            timer
+        };
+        assert_eq!([read.count(), read.count()], [4_464, 34_464]);
+    }
+}

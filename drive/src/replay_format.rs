@@ -214,4 +214,32 @@ mod tests {
         assert_eq!(decode_record(&[7, 0, 0, 0], methods), None, "a status that does not exist");
         assert_eq!(decode_record(&[0; 40], methods), None, "cut short");
     }
+
+    #[test]
+    fn settings_samples_and_counters_stand_where_the_format_says() {
+        let config = crate::Settings::default().bank_config(&crate::Calibration::DEFAULT).unwrap();
+        let mut buffer = [0xaa; CONFIG_BYTES + 4];
+        let bytes = encode_config(&config, &mut buffer).unwrap();
+        let (length, body) = bytes.split_first_chunk::<4>().unwrap();
+        assert_eq!(usize::try_from(u32::from_le_bytes(*length)), Ok(body.len()));
+        assert_eq!(decode_config(body), Some(config));
+        assert_eq!(decode_config(&body[..body.len() - 1]), None, "cut short");
+
+        let sample = Sample { position: -0.25, force: 3.5, elapsed: 1e-3 };
+        let bytes = encode_sample(&sample);
+        let words = [-0.25_f32, 3.5, 1e-3].map(f32::to_le_bytes);
+        assert_eq!(bytes.as_slice(), words.as_flattened());
+        assert_eq!(decode_sample(&bytes), sample);
+
+        let counters = ReplayCounters { samples: 1, ticks: 2 << 8, overruns: 3 << 16, starved: 4 << 24 };
+        let bytes = encode_counters(&counters);
+        assert_eq!(bytes, [1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4]);
+        assert_eq!(decode_counters(&bytes), Some(counters));
+    }
+
+    #[test]
+    fn a_record_is_a_word_and_eight_words_for_each_method() {
+        let two = Methods::default().with(Method::Sprls).with(Method::NewtonBlmf);
+        assert_eq!([Methods::default(), two].map(record_bytes), [4, 4 + 2 * 32]);
+    }
 }

@@ -118,3 +118,27 @@ fn contact_detector(calibration: &Calibration) -> ContactDetectorConfig {
     let noise = f64::from(calibration.force_noise);
     ContactDetectorConfig { on_force: (2.5 * noise) as f32, off_force: (0.5 * noise) as f32, off_samples: 5 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_covariance_is_limited_to_a_hundred_times_its_start_within_two_bounds() {
+        for (initial_covariance, limit) in [(10.0, 1e6), (1e5, 1e7), (1e8, 1e9)] {
+            let settings = Settings { initial_covariance, ..Settings::default() };
+            let config = settings.bank_config(&Calibration::DEFAULT).expect("sound settings");
+            let limits = [config.rls.covariance_limit, config.ewrls.covariance_limit, config.sprls.covariance_limit];
+            assert_eq!(limits, [limit; 3]);
+            let starts = [config.rls, config.ewrls].map(|law| law.initial_covariance);
+            assert_eq!((starts, config.sprls.initial_covariance), ([initial_covariance; 2], initial_covariance));
+            assert_eq!(config.reset_rls.initial_covariance, initial_covariance);
+        }
+    }
+
+    #[test]
+    fn contact_begins_and_ends_by_the_noise_of_the_force() {
+        let found = contact_detector(&Calibration { force_noise: 0.5, ..Calibration::DEFAULT });
+        assert_eq!((found.on_force, found.off_force, found.off_samples), (1.25, 0.25, 5));
+    }
+}

@@ -115,9 +115,8 @@ pub struct TrajectoryFollower {
     /// Last error, and its rate behind the low-pass.
     error: Option<f32>,
     rate: f32,
-    /// The last depths, a ring, and how many of them there are.
+    /// The depths at the last references, a ring: that of reference n at n modulo its length.
     depths: [f32; SPEED_TICKS],
-    taken: usize,
 }
 
 impl Default for TrajectoryFollower {
@@ -130,7 +129,7 @@ impl TrajectoryFollower {
     /// Nothing prepared.
     pub const fn new() -> Self {
         let status = TrajectoryStatus { state: TrajectoryState::Idle, played: 0 };
-        Self { config: None, status, error: None, rate: 0.0, depths: [0.0; SPEED_TICKS], taken: 0 }
+        Self { config: None, status, error: None, rate: 0.0, depths: [0.0; SPEED_TICKS] }
     }
 
     /// Prepares a run. One that goes on is ended by it.
@@ -228,12 +227,11 @@ impl TrajectoryFollower {
         if sample.force.is_nan() || sample.force.abs() > config.force {
             return Err(StopReason::Force);
         }
-        let place = self.taken % SPEED_TICKS;
-        let Some(oldest) = self.depths.get_mut(place) else { return Err(StopReason::Fault) };
+        let played = self.status.played as usize;
+        let Some(oldest) = self.depths.get_mut(played % SPEED_TICKS) else { return Err(StopReason::Fault) };
         let before = core::mem::replace(oldest, sample.position);
-        let is_full = self.taken >= SPEED_TICKS;
-        self.taken = if is_full { SPEED_TICKS + (self.taken + 1) % SPEED_TICKS } else { self.taken + 1 };
         let way = (sample.position - before).abs() * f32::from(TICK_HZ) / SPEED_TICKS as f32;
+        let is_full = played >= SPEED_TICKS;
         if is_full && (way.is_nan() || way > config.speed) { Err(StopReason::Speed) } else { Ok(()) }
     }
 }
@@ -330,6 +328,65 @@ mod tests {
     }
 
     #[test]
+    fn the_rate_of_the_error_passes_a_low_pass_and_starts_at_zero() {
+        let config = TrajectoryConfig { effort: 1e9, proportional: 1.0, derivative: 1.0, pass: 0.25, ..CONFIG };
+        let mut follower = TrajectoryFollower::new();
+        follower.prepare(config).unwrap();
+        follower.start();
+        // Errors 1, 3, 3 and 2 m, a millisecond apart: rates 0, 2000, 0 and -1000 m/s before the filter.
+        let efforts = [1.0, 3.0, 3.0, 2.0].map(|reference| follower.update(&report(0.0, 0.0), Some(reference)));
+        assert_eq!(efforts, [1.0, 3.0 + 500.0, 3.0 + 375.0, 2.0 + 31.25]);
+    }
+
+    #[test]
+    fn the_force_may_be_its_limit_either_way() {
+        for force in [5.0, -5.0] {
+            let mut follower = running();
+            follower.update(&report(0.001, force), Some(0.002));
+            assert!(follower.is_running(), "{force}");
+        }
+    }
+
+    /// The speed is the way of the last 16 ticks over their time, wherever in its ring of depths a movement begins.
+    #[test]
+    fn the_speed_is_a_mean_over_sixteen_ticks_at_every_place_of_its_ring() {
+        // A step of 2^-9 m in 16 ticks is 0.1220703125 m/s, exactly.
+        let (rest, small, speed) = (1.0 / 256.0, 1.0 / 512.0, 1_000.0 / 512.0 / 16.0);
+        let step = |at: usize, far: f32, config: TrajectoryConfig| {
+            let mut follower = TrajectoryFollower::new();
+            follower.prepare(config).unwrap();
+            follower.start();
+            // At rest, a step at tick `at` and the way back 10 ticks later: 16 ticks on, neither may be seen any more.
+            (0..at + 40).find(|&tick| {
+                let position = if (at..at + 10).contains(&tick) { far } else { 0.0 };
+                follower.update(&report(rest + position, 0.0), Some(0.0));
+                !follower.is_running()
+            })
+        };
+        let config = TrajectoryConfig { speed, ..CONFIG };
+        for at in 16..50 {
+            assert_eq!(step(at, small, config), None, "just the limit, at {at}");
+            assert_eq!(step(at, -small, config), None, "just the limit, back, at {at}");
+            assert_eq!(step(at, small * 1.01, config), Some(at), "at {at}");
+            assert_eq!(step(at, -small * 1.01, config), Some(at), "back, at {at}");
+        }
+        // A quarter of the limit a tick from rest is the whole limit after four ticks, and beyond it after five.
+        for at in 16..50_usize {
+            let mut follower = TrajectoryFollower::new();
+            follower.prepare(config).unwrap();
+            follower.start();
+            let ended = (0..at + 20).find(|&tick| {
+                let gone = (tick + 1).saturating_sub(at) as f32;
+                follower.update(&report(rest + gone * small / 4.0, 0.0), Some(0.0));
+                !follower.is_running()
+            });
+            assert_eq!(ended, Some(at + 4), "from {at}");
+        }
+        // Before sixteen ticks have passed there is no mean.
+        assert_eq!(step(8, small * 4.0, config), Some(16), "the first tick with one");
+    }
+
+    #[test]
     fn a_silent_host_ends_it_and_only_a_new_preparation_begins_anew() {
         let mut follower = running();
         follower.check_silence(100);
@@ -362,6 +419,8 @@ mod tests {
         assert_eq!(follower.status().state, TrajectoryState::Idle);
         for wrong in [
             TrajectoryConfig { depth: [0.0, 0.0], ..CONFIG },
+            TrajectoryConfig { depth: [f32::NEG_INFINITY, 0.0], ..CONFIG },
+            TrajectoryConfig { depth: [0.0, f32::INFINITY], ..CONFIG },
             TrajectoryConfig { pass: 0.0, ..CONFIG },
             TrajectoryConfig { timeout: 0, ..CONFIG },
             TrajectoryConfig { length: 0, ..CONFIG },

@@ -1,11 +1,11 @@
 //! The link: whatever the bytes.
 
-use palpate_drive::framing::{LINE_BYTES, Receiver, encode};
+use palpate_drive::framing::{LINE_BYTES, LinkCounters, Receiver, encode};
 use palpate_drive::link::{
     Command, EstimateMessage, FEED, Message, Request, RequestOutcome, SampleMessage, Source, Streams,
 };
 use palpate_drive::replay_format::estimate_words;
-use palpate_drive::{DecodedRequest, Faults, INPUT_BYTES, Input, Order, RequestDecoder, Settings};
+use palpate_drive::{DecodedRequest, Faults, INPUT_BYTES, Input, Order, POINTS, RequestDecoder, Settings};
 
 use super::{dithered, with_cycle};
 
@@ -269,4 +269,41 @@ fn fuzz_whatever_comes_over_the_line_the_desk_goes_on() {
     // And it still hears; the first zero ends whatever was left.
     hear(&mut decoder, &[0]);
     assert_eq!(hear(&mut decoder, &all[1]), [(1, DecodedRequest::Identity)]);
+}
+
+fn decode(decoder: &mut RequestDecoder, command: Command<'_>) -> Option<DecodedRequest> {
+    let mut decoded = None;
+    for byte in line(&Request { number: 3, command }) {
+        decoded = decoded.or(decoder.push(byte));
+    }
+    decoded.map(|(_, request)| request)
+}
+
+#[test]
+fn references_are_whole_numbers_of_floats_and_no_more_than_fit() {
+    let mut decoder = RequestDecoder::new();
+    let bytes: Vec<u8> = (0..=POINTS).flat_map(|k| (k as f32 + 0.5).to_le_bytes()).collect();
+    for count in [1, 2, POINTS] {
+        let Some(DecodedRequest::Points(points, used)) = decode(&mut decoder, Command::Points(&bytes[..4 * count]))
+        else {
+            panic!("{count} references are refused");
+        };
+        assert_eq!(used, count);
+        assert!(points[..count].iter().enumerate().all(|(k, point)| *point == k as f32 + 0.5), "{points:?}");
+        assert!(points[count..].iter().all(|point| *point == 0.0), "{points:?}");
+    }
+    assert_eq!(decoder.link_counters().refused, 0);
+    for (refused, length) in [(1, 0), (2, 5), (3, 4 * POINTS + 4)] {
+        assert!(decode(&mut decoder, Command::Points(&bytes[..length])).is_none(), "{length} bytes");
+        assert_eq!(decoder.link_counters().refused, refused, "{length} bytes");
+    }
+    decoder.refuse();
+    assert_eq!((decoder.link_counters().refused, decoder.link_counters().frames), (4, 6));
+}
+
+#[test]
+fn a_line_at_rest_counts_as_nothing() {
+    let mut receiver = Receiver::new();
+    assert!((0..5).all(|_| !receiver.push(0)));
+    assert_eq!(receiver.link_counters(), LinkCounters::default());
 }

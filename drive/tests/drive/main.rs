@@ -46,7 +46,16 @@ fn dithered(k: u32) -> Input {
 
 /// Runs `work` with a cycle that begins with `found`.
 fn with_cycle<T>(settings: Settings, found: Faults, work: impl FnOnce(&mut Cycle<'_>, &Counters) -> T) -> T {
-    let calibration = CALIBRATION;
+    with_calibrated_cycle(CALIBRATION, settings, found, work)
+}
+
+/// As [`with_cycle`], with a calibration of its own.
+fn with_calibrated_cycle<T>(
+    calibration: Calibration,
+    settings: Settings,
+    found: Faults,
+    work: impl FnOnce(&mut Cycle<'_>, &Counters) -> T,
+) -> T {
     let mut estimator = Estimator::new(&settings, &calibration, 0).expect("sound settings");
     let counters = Counters::new();
     let mut cycle = Cycle::new(calibration, &mut estimator, &counters, Bounds::NO_EFFORT, found);

@@ -80,6 +80,20 @@ fn after_a_complaint_the_encoder_is_asked_for_its_errors_which_clears_them() {
 }
 
 #[test]
+fn a_complaint_in_both_words_is_a_complaint() {
+    let complaint = as5047p::with_parity(0x4000 | 0x0123).to_be_bytes();
+    let mut spi = angles(&[
+        (&[0xff, 0xff], &complaint),
+        (&[0xff, 0xfc], &complaint),
+        (&[0xff, 0xff], &[0x00, 0x03]),
+        (&[0x40, 0x01], &[0x01, 0x23]),
+    ]);
+    let mut encoder = As5047p::new(spi.clone(), NoopDelay::new());
+    assert!((0..2).all(|_| encoder.read().is_ok()));
+    spi.done();
+}
+
+#[test]
 fn every_state_of_the_encoder_that_is_no_angle_is_told() {
     let angle = as5047p::with_parity(1000);
     let with = |bits: u16| as5047p::with_parity(0x0080 | bits);
@@ -91,6 +105,11 @@ fn every_state_of_the_encoder_that_is_no_angle_is_told() {
     }
     assert_eq!(as5047p::angle(0x0000, 0x0000), Err(Faults::POSITION_ALARM), "a line that hangs low");
     assert_eq!(as5047p::angle(0xffff, 0xffff), Err(Faults::POSITION_ALARM), "a line that hangs high");
+    let complaint = 0x4000;
+    let (upset, unsound) = (as5047p::with_parity(1000 | complaint), with(0x0100 | complaint));
+    for (angle, diagnostics) in [(upset, with(0x0100)), (angle, unsound), (upset, unsound)] {
+        assert_eq!(as5047p::angle(angle, diagnostics), Err(Faults::POSITION_ALARM), "error flag");
+    }
     for bit in 0..16 {
         assert_eq!(as5047p::angle(angle ^ 1 << bit, with(0x0100)), Err(Faults::POSITION_PARITY), "bit {bit} upset");
     }
