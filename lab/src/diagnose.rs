@@ -8,13 +8,17 @@ pub mod check;
 pub mod command;
 pub mod contact;
 pub mod drive;
+pub mod evidence;
 pub mod experiment;
+pub mod interval;
 pub mod linalg;
+pub mod model_comparison;
 pub mod phase;
 pub mod report;
 pub mod signals;
 pub mod term;
 pub mod thresholds;
+pub mod verdict;
 
 use anyhow::{Result, bail};
 

@@ -15,7 +15,7 @@ use super::case_files::{self, CaseFiles};
 use crate::diagnose::contact::fit::{Data, Effort, Fit};
 use crate::diagnose::contact::held_out::{Folds, rms};
 use crate::diagnose::contact::model::index;
-use crate::diagnose::contact::outcome::nominal_fit;
+use crate::diagnose::contact::nominal::nominal_fit;
 use crate::diagnose::contact::prepare;
 use crate::diagnose::contact::projection::Projection;
 use crate::diagnose::sensed;

@@ -5,8 +5,8 @@
 //! Jorgensen, *Computers and Chemical Engineering* 28, 2004; Ljung, *System Identification*, 1999). Nothing is differentiated and no
 //! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
 //!
-//! [`trial`] and [`input`] are the data, [`law`] and [`noise`] the equations, [`filter`] the innovations, [`model`] and [`term`] what
-//! can be in a law, [`fit`] the likelihood, [`candidates`], [`links`] and [`selection`] the choice with its [`criteria`],
+//! [`trial`] and [`input`] are the data, [`law`] and [`noise`] the equations, [`filter`] gives the [`innovations`] of one body or two,
+//! [`model`] and [`term`] are what can be in a law, [`fit`] the likelihood, [`nominal`] the law of the rig file, [`candidates`], [`links`] and [`selection`] the choice with its [`criteria`],
 //! [`held_out`] and [`interval`] the evidence, and [`outcome`] the answer.
 
 pub mod candidates;
@@ -14,6 +14,7 @@ pub mod criteria;
 pub mod filter;
 pub mod fit;
 pub mod held_out;
+pub mod innovations;
 pub mod input;
 pub mod interval;
 pub mod law;
@@ -22,11 +23,14 @@ pub mod matrix;
 pub mod model;
 pub mod named;
 pub mod noise;
+pub mod nominal;
+pub mod one_body_filter;
 pub mod outcome;
 pub mod prepare;
 pub mod selection;
 pub mod term;
 pub mod trial;
+pub mod two_body_filter;
 
 #[cfg(test)]
 mod testing;

@@ -10,4 +10,3 @@ pub mod html;
 pub mod merge;
 mod residual_map;
 pub mod summary;
-pub mod verdict;

@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result};
 
 use crate::diagnose::contact::fit::{Data, Effort};
 use crate::diagnose::contact::model::index;
-use crate::diagnose::contact::outcome::{law_of, nominal_fit};
+use crate::diagnose::contact::nominal::{law_of, nominal_fit};
 use crate::diagnose::contact::prepare;
 use crate::diagnose::contact::trial::ContactTrial;
 use crate::diagnose::{drive, sensed};
@@ -45,7 +45,7 @@ pub fn refitted(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Rig> {
         contact.surface = fit.values[index::SURFACE];
     } else if let Some(table) = &mut fresh.drive {
         let nominal = drive::prepare::nominal(rig, trials, known).context("a rig without a drive")?;
-        let taught = drive::outcome::refitted(&drive::prepare::trials(rig, trials), &nominal);
+        let taught = drive::nominal::refitted(&drive::prepare::trials(rig, trials), &nominal);
         [table.inertia, table.viscous] = taught.context("trials in which nothing moves")?;
     }
     Ok(fresh)
@@ -79,7 +79,7 @@ fn scored(rig: &Rig, origin: &str, trial: &Recording) -> Result<Vec<f64>> {
     let known = effects::resolve_all(rig, origin)?;
     if !prepare::is_recorded(rig, own) {
         let nominal = drive::prepare::nominal(rig, own, known).context("neither a contact nor a drive")?;
-        let missing = drive::outcome::missing_under(&drive::prepare::trials(rig, own), &nominal);
+        let missing = drive::nominal::missing_under(&drive::prepare::trials(rig, own), &nominal);
         return Ok(missing.context("a trial in which nothing moves")?.concat());
     }
     let nominal = prepare::nominal(rig, known).context("a rig without a contact")?;

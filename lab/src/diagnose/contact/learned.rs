@@ -177,7 +177,7 @@ pub fn shape(paths: &[[f64; 3]]) -> Shape {
 mod tests {
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
-    use crate::diagnose::contact::outcome::nominal_fit;
+    use crate::diagnose::contact::nominal::nominal_fit;
 
     #[test]
     fn a_pocket_and_another_way_back_are_read_from_the_paths() {

@@ -1,7 +1,5 @@
 //! What the recordings say of a contact: the law, its evidence, what else would do, and what is left.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF as _};
-
 use super::criteria::{
     LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, LEAST_VUONG, MOST_LEFT, NOTABLE_POWER,
     TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
@@ -10,38 +8,14 @@ use super::fit::{Data, Effort, Fit, Rest};
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::intervals;
 use super::learned::{LearnedCurve, learned};
-use super::model::{ContactModel, OwnValues, index};
-use super::scales::Scales;
+use super::model::index;
+use super::nominal::{NominalContact, law_of, nominal_fit};
 use super::selection::{Chosen, Search};
 use super::trial::ContactTrial;
-use crate::diagnose::term::Term;
-use crate::effects::{Place, Resolved};
+use crate::diagnose::evidence::{NamedTerm, Single};
+use crate::diagnose::model_comparison::likelihood_ratio_p;
+use crate::diagnose::verdict::Verdict;
 use crate::recording::Recording;
-use crate::rig::Contact;
-
-/// What a rig file says of a contact.
-#[derive(Clone)]
-pub struct NominalContact {
-    /// Spring, damper and surface.
-    pub contact: Contact,
-    /// Reading of the sensor without a force.
-    pub force_zero: f64,
-    /// Whether positions are angles.
-    pub is_rotary: bool,
-    /// Effects that it already holds: nominal, and refitted like the other values.
-    pub effects: Vec<Resolved>,
-}
-
-/// A named effect.
-#[derive(Debug, Clone)]
-pub struct NamedTerm {
-    /// Its place among the terms of the model.
-    pub at: usize,
-    /// Share of the held-out power above the noise that it takes, beside the others.
-    pub held_out_share: f64,
-    /// Likelihood-ratio test of it, rows that belong together counted once, Bonferroni over all that were tried.
-    pub p_value: f64,
-}
 
 /// A set of effects that the recordings do not tell from the answer.
 #[derive(Debug, Clone)]
@@ -54,19 +28,6 @@ pub struct Alternative {
     pub fit: Fit,
 }
 
-/// An effect tried alone.
-#[derive(Debug, Clone, Copy)]
-pub struct Single {
-    /// Its name.
-    pub name: &'static str,
-    /// Share of the power above the noise that it takes, rows of its fit.
-    pub share: f64,
-    /// Likelihood-ratio test of it, for itself.
-    pub p_value: f64,
-}
-
-pub use crate::diagnose::drive::outcome::Finding;
-
 /// Everything found of a contact.
 pub struct Outcome {
     /// The trials, as they were looked at.
@@ -76,7 +37,7 @@ pub struct Outcome {
     /// What each row is worth: one over its expected deviation.
     pub weights: Vec<Vec<f64>>,
     /// How it stands.
-    pub finding: Finding,
+    pub verdict: Verdict,
     /// The refitted nominal law.
     pub nominal: Fit,
     /// Terms that the rig file already holds.
@@ -124,25 +85,6 @@ impl Outcome {
 /// Fewest rows that a contact is identified from.
 const FEWEST_ROWS: usize = 16;
 
-/// Rows that a law is fitted to, of all trials together: more are taken together in means.
-const MOST_ROWS: usize = 45_000;
-
-/// Rows that effects are looked for in.
-const COARSE_ROWS: usize = 8_000;
-
-/// Rows of a recording that become one.
-#[must_use]
-pub fn thinning(rows: usize) -> usize {
-    rows.div_ceil(MOST_ROWS).max(1)
-}
-
-/// The same for the search.
-#[must_use]
-pub fn coarse_thinning(rows: usize) -> usize {
-    let fine = thinning(rows);
-    (rows / fine).div_ceil(COARSE_ROWS).max(1) * fine
-}
-
 /// Identifies the contact of `trials`, and of `coarse`, means of more rows of the same; `None` where they show too little.
 #[must_use]
 pub fn identify(
@@ -172,54 +114,6 @@ pub fn identify(
     Some(outcome)
 }
 
-/// The law that `rig` states, with the values that it gives.
-#[must_use]
-pub fn law_of(trials: &[ContactTrial], rig: &NominalContact) -> (ContactModel, Vec<f64>) {
-    let contact = rig.contact;
-    let held = || rig.effects.iter().filter(|effect| effect.effect.spec().place != Place::Drive);
-    let model = ContactModel {
-        bilateral: contact.bilateral,
-        force_zero: rig.force_zero,
-        trials: trials.len(),
-        own: OwnValues::NONE,
-        terms: held().map(|effect| Term { effect: effect.effect, form: effect.form }).collect(),
-        scales: Scales::of(trials, contact.surface, contact.bilateral, contact.stiffness, rig.is_rotary),
-    };
-    let mut values = vec![0.0; model.nominal_count()];
-    values[index::STIFFNESS] = contact.stiffness;
-    values[index::DAMPING] = contact.damping;
-    values[index::SURFACE] = contact.surface;
-    for (effect, term) in held().zip(&model.terms) {
-        values.extend(term.spread(&effect.values, model.trials));
-    }
-    (model, values)
-}
-
-/// Surfaces that the nominal fit starts from, of the travel above its least position: a rig file can be far off.
-const SURFACE_STARTS: [f64; 4] = [0.1, 0.35, 0.6, 0.85];
-
-/// The law that `rig` states, its values refitted.
-#[must_use]
-pub fn nominal_fit(data: &Data<'_>, rig: &NominalContact) -> Fit {
-    let (model, start) = law_of(data.trials, rig);
-    let model = &model;
-    let mut best = data.fit(model, &start, Effort::FULL);
-    if !model.bilateral {
-        for part in SURFACE_STARTS {
-            let mut moved = start.clone();
-            moved[index::SURFACE] = model.scales.positions[0] + part * model.scales.travel();
-            let fit = data.fit(model, &moved, Effort::QUICK);
-            if fit.energy < 0.9 * best.energy {
-                let fit = data.fit(model, &fit.values, Effort::FULL);
-                if fit.energy < best.energy {
-                    best = fit;
-                }
-            }
-        }
-    }
-    best
-}
-
 fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let data = &search.data;
     let folds = Folds::of(data);
@@ -237,14 +131,14 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         (0..data.trials.len()).map(|trial| data.residual(&fit.model, &fit.values, trial)).collect()
     };
     let given_residual = columns(&given);
-    let finding = finding(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
-    let is_left = matches!(finding, Finding::Unknown | Finding::PartlyExplained);
+    let verdict = verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
+    let is_left = matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained);
     let learned = if is_left { learned(data, &fit) } else { None };
     Outcome {
         trials: Vec::new(),
         noise: Vec::new(),
         weights: Vec::new(),
-        finding,
+        verdict,
         learned,
         nominal: search.nominal.clone(),
         known_terms: search.nominal.model.terms.len(),
@@ -297,18 +191,16 @@ fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, 
         let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
-            p_value: (tried * likelihood_ratio(search, &fit, less)).min(1.0),
+            p_value: (tried * likelihood_ratio_p(search.worth(&fit, less).gain, added_values(&fit, less))).min(1.0),
         });
         let named = named.collect();
         return (fit, held, named);
     }
 }
 
-/// Probability of as large a likelihood ratio where the smaller model is true (Wilks).
-fn likelihood_ratio(search: &Search<'_>, more: &Fit, less: &Fit) -> f64 {
-    let values = more.model.free_count().saturating_sub(less.model.free_count()).max(1) as f64;
-    let ratio = 2.0 * search.worth(more, less).gain.max(0.0);
-    ChiSquared::new(values).map_or(1.0, |chi| chi.sf(ratio))
+/// Values that are fitted in `more` and not in `less`.
+fn added_values(more: &Fit, less: &Fit) -> usize {
+    more.model.free_count().saturating_sub(less.model.free_count())
 }
 
 fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
@@ -322,12 +214,11 @@ fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
             continue;
         }
         let taken = before.energy - fit.energy;
-        let values = fit.model.free_count().saturating_sub(before.model.free_count()).max(1) as f64;
-        let ratio = (taken / (rest.power * rest.correlated_rows)).max(0.0);
+        let gain = 0.5 * (taken / (rest.power * rest.correlated_rows));
         all.push(Single {
             name: term.name(),
             share: (taken / (before.energy - expected).max(taken.abs()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0),
-            p_value: ChiSquared::new(values).map_or(1.0, |chi| chi.sf(ratio)),
+            p_value: likelihood_ratio_p(gain, added_values(fit, &before)),
         });
     }
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -374,7 +265,7 @@ fn takes_too_little(search: &Search<'_>, fit: &Fit, named: &[NamedTerm]) -> bool
     !named.is_empty() && Rest::of(&search.data, fit).over_sensors > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
 }
 
-fn finding(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Finding {
+fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Verdict {
     let data = &search.data;
     let expected = data.expected();
     let rest = Rest::of(data, fit);
@@ -385,18 +276,18 @@ fn finding(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held
     if named.is_empty() {
         let refitted = rms(data, &held[0].residual);
         return if is_notable {
-            Finding::Unknown
+            Verdict::Unknown
         } else if given > VALUES_MATTER * refitted {
-            Finding::Parameters
+            Verdict::Parameters
         } else {
-            Finding::NoMismatch
+            Verdict::NoMismatch
         };
     }
     let is_told = 1.0 - left / all > TOLD_SHARE;
     if is_notable && (!is_told || rest.over_sensors > MOST_LEFT * search.nominal.energy / expected) {
-        Finding::PartlyExplained
+        Verdict::PartlyExplained
     } else {
-        Finding::Explained
+        Verdict::Explained
     }
 }
 
@@ -417,7 +308,7 @@ mod tests {
     #[test]
     fn where_nothing_is_missing_values_are_refitted_and_nothing_is_named() {
         let outcome = found([&TestContact::PLAIN; 2]);
-        assert_eq!((names(&outcome), outcome.finding), (vec![], Finding::Parameters));
+        assert_eq!((names(&outcome), outcome.verdict), (vec![], Verdict::Parameters));
         for (at, truth) in [(index::STIFFNESS, 300.0), (index::DAMPING, 6.0), (index::SURFACE, 0.0)] {
             let ([low, high], value) = (outcome.intervals[at], outcome.chosen.values[at]);
             // 95 % intervals, widened by a half: three values of one draw.
@@ -433,7 +324,7 @@ mod tests {
     #[test]
     fn a_branch_that_relaxes_is_named_with_its_values() {
         let outcome = found([&TestContact { branch: 60.0, ..TestContact::PLAIN }; 2]);
-        assert_eq!((names(&outcome), outcome.finding), (vec!["stress_relaxation"], Finding::Explained));
+        assert_eq!((names(&outcome), outcome.verdict), (vec!["stress_relaxation"], Verdict::Explained));
         let first = outcome.chosen.model.first_value_of(0);
         let [stiffness, time] = [outcome.chosen.values[first], outcome.chosen.values[first + 1]];
         assert!((stiffness / 60.0 - 1.0).abs() < 0.1 && (time / 0.4 - 1.0).abs() < 0.1, "{stiffness} {time}");

@@ -1,11 +1,28 @@
 //! From recordings and a rig file to the contact's trials and nominal law.
 
-use super::outcome::{NominalContact, coarse_thinning, thinning};
+use super::nominal::NominalContact;
 use super::trial::ContactTrial;
 use crate::effects::Resolved;
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
 use crate::sensors::Figures;
+
+/// Rows that a law is fitted to, of all trials together: more are taken together in means.
+const MOST_ROWS: usize = 45_000;
+
+/// Rows that effects are looked for in.
+const COARSE_ROWS: usize = 8_000;
+
+/// Rows of a recording that become one.
+fn thinning(rows: usize) -> usize {
+    rows.div_ceil(MOST_ROWS).max(1)
+}
+
+/// The same for the search.
+fn coarse_thinning(rows: usize) -> usize {
+    let fine = thinning(rows);
+    (rows / fine).div_ceil(COARSE_ROWS).max(1) * fine
+}
 
 /// Whether the rig has a contact whose force every trial holds.
 #[must_use]

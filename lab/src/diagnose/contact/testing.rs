@@ -4,7 +4,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution as _, Normal};
 
-use super::outcome::NominalContact;
+use super::nominal::NominalContact;
 use super::trial::ContactTrial;
 use crate::recording::Recording;
 use crate::rig::Contact;

@@ -3,9 +3,11 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::filter::{Gains, Innovations, innovations, one_body};
+use super::filter::innovations;
+use super::innovations::Innovations;
 use super::model::Model;
 use super::noise::Noise;
+use super::one_body_filter::{Gains, one_body};
 use super::term::Range;
 use super::trial::DriveTrial;
 use crate::diagnose::linalg::{dot, energy};

@@ -3,49 +3,22 @@
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
-use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
 use super::criteria::{CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_VUONG, MOST_LEFT, UNKNOWN_PART_OF_EFFORT};
 use super::filter::innovations;
-use super::fit::{Data, Effort, Fit, fit};
+use super::fit::{Data, Fit};
 use super::held_out::{Folds, HeldOut, missing_force, rms};
 use super::interval::intervals;
 use super::law::{DriveLaw, Side};
-use super::model::{Model, index};
-use super::named::known;
+use super::model::index;
 use super::noise::{Noise, white_variance};
+use super::nominal::{LOWEST_BAND_HZ, NominalDrive, encoder_variance, nominal_fit, scales};
 use super::selection::{Chosen, Search};
-use super::term::{Scales, Term};
+use super::term::Term;
 use super::trial::DriveTrial;
-use crate::effects::Resolved;
-
-/// What a rig file says of a drive.
-#[derive(Clone)]
-pub struct NominalDrive {
-    /// kg or kg m^2.
-    pub inertia: f64,
-    /// N s/m or N m s/rad.
-    pub viscous: f64,
-    /// Whether positions are angles.
-    pub is_rotary: bool,
-    /// On which side of the transmission the encoder sits, where that is known.
-    pub encoder: Option<Side>,
-    /// Step of the encoder, m or rad; zero where it is not known.
-    pub resolution: f64,
-    /// Effects that it already holds: nominal, and refitted like the other values.
-    pub effects: Vec<Resolved>,
-}
-
-/// A named term of the drive.
-#[derive(Debug, Clone)]
-pub struct NamedTerm {
-    /// Its place among the terms of the model.
-    pub at: usize,
-    /// Share of the held-out power that it takes, beside the other terms.
-    pub held_out_share: f64,
-    /// Likelihood-ratio test of it, Bonferroni over all terms tried.
-    pub p_value: f64,
-}
+use crate::diagnose::evidence::{NamedTerm, Single};
+use crate::diagnose::model_comparison::likelihood_ratio_p;
+use crate::diagnose::verdict::Verdict;
 
 /// A set of terms that the recordings do not tell from the answer.
 #[derive(Debug, Clone)]
@@ -56,38 +29,12 @@ pub struct Alternative {
     pub held_out_share: f64,
 }
 
-/// A term tried alone.
-#[derive(Debug, Clone, Copy)]
-pub struct Single {
-    /// Its name.
-    pub name: &'static str,
-    /// Share of the unexplained power that it takes, rows of its fit.
-    pub share: f64,
-    /// Likelihood-ratio test of it, for itself.
-    pub p_value: f64,
-}
-
-/// How it stands with the drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Finding {
-    /// As good as the sensors.
-    NoMismatch,
-    /// Only values are off.
-    Parameters,
-    /// Named.
-    Explained,
-    /// Named, and something is left.
-    PartlyExplained,
-    /// Something is there that nothing explains.
-    Unknown,
-}
-
 /// Everything found of a drive.
 pub struct Outcome {
     /// The trials, as they were looked at.
     pub trials: Vec<DriveTrial>,
     /// How it stands.
-    pub finding: Finding,
+    pub verdict: Verdict,
     /// The law with its terms.
     pub chosen: Fit,
     /// 95 % interval of each of its values.
@@ -111,22 +58,10 @@ impl Outcome {
     pub fn leave_to_the_contact(&mut self, is_told: impl Fn(&str) -> bool) {
         let model = &self.chosen.model;
         self.named.retain(|term| !is_told(model.terms[term.at].name()));
-        if self.named.is_empty() && self.finding == Finding::Explained {
-            self.finding = Finding::Parameters;
+        if self.named.is_empty() && self.verdict == Verdict::Explained {
+            self.verdict = Verdict::Parameters;
         }
     }
-}
-
-/// Fewest encoder rows that a drive is identified from.
-const FEWEST_ROWS: usize = 200;
-
-/// Rows that are looked at of all trials together: more are thinned, with the effort's mean over each interval exact.
-const MOST_ROWS: usize = 45_000;
-
-/// Trials of a recording thinned to what the search can bear.
-#[must_use]
-pub fn thinning(rows: usize) -> usize {
-    rows.div_ceil(MOST_ROWS).max(1)
 }
 
 /// Identifies the drive of `trials`; `None` where they show no motion or are too short.
@@ -148,101 +83,6 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
     Some(outcome)
 }
 
-/// Inertia and viscous friction that `trials` teach; `None` where they show no motion.
-#[must_use]
-pub fn refitted(trials: &[DriveTrial], rig: &NominalDrive) -> Option<[f64; 2]> {
-    let scales = scales(trials, rig)?;
-    let variance = encoder_variance(trials, &scales);
-    let data = Data { trials, least_encoder_variance: 0.3 * variance };
-    let fit = nominal_fit(&data, rig, scales, variance)?;
-    Some([fit.values[index::INERTIA], fit.values[index::VISCOUS]])
-}
-
-/// Missing force of `trials` under the values of `rig`, a column a trial, seen up to 5 Hz; the effort's delay alone is fitted.
-/// `None` where they show no motion.
-#[must_use]
-pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Vec<f64>>> {
-    let scales = scales(trials, rig)?;
-    let variance = encoder_variance(trials, &scales);
-    let data = Data { trials, least_encoder_variance: 0.3 * variance };
-    let encoder = rig.encoder.unwrap_or(Side::Load);
-    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
-        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
-    let model = Model { terms, scales };
-    let band = LOWEST_BAND_HZ.min(0.1 / scales.period_s);
-    let noise =
-        Noise { ln_disturbance: 0.0, ln_encoder: variance.ln() }.with_crossing(band, scales.period_s, rig.inertia);
-    let under = |rows: f64| {
-        let values = [vec![rig.inertia, rig.viscous, rows * scales.period_s], values.concat()].concat();
-        let fit = Fit { model: model.clone(), values, noise, log_likelihood: 0.0, ended: super::fit::Ended::Converged };
-        missing_force(&data, &fit, &noise)
-    };
-    DELAY_STARTS.iter().map(|rows| under(*rows)).min_by(|a, b| rms(a).total_cmp(&rms(b)))
-}
-
-/// Band in which a missing force is looked for even where the nominal law leaves nothing, Hz.
-const LOWEST_BAND_HZ: f64 = 5.0;
-
-fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
-    let rows: usize = trials.iter().map(DriveTrial::len).sum();
-    let largest = |of: &dyn Fn(&DriveTrial) -> f64| trials.iter().map(of).fold(0.0, f64::max);
-    let effort = largest(&|trial| deviation(&trial.effort));
-    let speed = largest(&|trial| usual_speed(trial));
-    let position = || trials.iter().flat_map(|trial| trial.position.iter());
-    let lowest = position().copied().fold(f64::INFINITY, f64::min);
-    let travel = position().copied().fold(f64::NEG_INFINITY, f64::max) - lowest;
-    let moves = rows >= FEWEST_ROWS && effort > 0.0 && speed > 0.0 && travel > 0.0;
-    moves.then(|| Scales {
-        effort,
-        peak_effort: largest(&|trial| trial.effort.iter().fold(0.0, |peak: f64, effort| peak.max(effort.abs()))),
-        speed,
-        travel,
-        lowest,
-        period_s: trials[0].period_s,
-        duration_s: largest(&DriveTrial::duration_s),
-        inertia: rig.inertia,
-        viscous: rig.viscous,
-        resolution: rig.resolution.max(1e-6 * travel),
-        is_rotary: rig.is_rotary,
-    })
-}
-
-/// Greatest mean speed over some rows.
-fn usual_speed(trial: &DriveTrial) -> f64 {
-    const ROWS: usize = 8;
-    let spans = trial.position.windows(ROWS + 1).zip(trial.time.windows(ROWS + 1));
-    spans.map(|(x, t)| ((x[ROWS] - x[0]) / (t[ROWS] - t[0])).abs()).fold(0.0, f64::max)
-}
-
-fn deviation(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
-}
-
-/// Of the quietest trial, and no less than a third of what rounding to the encoder's step leaves.
-fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
-    let white = trials.iter().map(|trial| white_variance(&trial.position)).fold(f64::INFINITY, f64::min);
-    white.max(0.3 * scales.resolution.powi(2) / 12.0)
-}
-
-/// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
-const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
-
-fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_variance: f64) -> Option<Fit> {
-    let encoder = rig.encoder.unwrap_or(Side::Load);
-    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
-        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
-    let model = Model { terms, scales };
-    let noise = Noise { ln_disturbance: scales.starting_density().ln(), ln_encoder: encoder_variance.ln() };
-    let fits = DELAY_STARTS.map(|rows| {
-        let start = [vec![scales.inertia, scales.viscous, rows * scales.period_s], values.concat()].concat();
-        fit(data, &model, &start, noise, Effort::FULL)
-    });
-    let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
-    best.log_likelihood.is_finite().then_some(best)
-}
-
 /// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.
 const LEAST_HELD_OUT_SHARE: f64 = 0.12;
 
@@ -259,11 +99,11 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     let (fit, improved, named) = believed(search, &folds, &common, chosen.fit.clone());
     let expected_noise = expected_noise(search, &fit, &common, seed);
     let intervals = intervals(data, &fit, &improved.values);
-    let finding = finding(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], expected_noise);
+    let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], expected_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
         trials: Vec::new(),
-        finding,
+        verdict,
         intervals,
         named,
         alternatives,
@@ -310,7 +150,7 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
         let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
-            p_value: (tried * likelihood_ratio(&fit, less)).min(1.0),
+            p_value: (tried * p_value(&fit, less)).min(1.0),
         });
         let named = named.collect();
         return (fit, held, named);
@@ -325,11 +165,9 @@ fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
     if less.model == search.nominal.model { search.nominal.clone() } else { search.polished(&less) }
 }
 
-/// Probability of as large a likelihood ratio where the smaller model is true (Wilks).
-fn likelihood_ratio(more: &Fit, less: &Fit) -> f64 {
-    let values = more.values.len().saturating_sub(less.values.len()).max(1) as f64;
-    let ratio = 2.0 * (more.log_likelihood - less.log_likelihood).max(0.0);
-    ChiSquared::new(values).map_or(1.0, |chi| chi.sf(ratio))
+/// Likelihood-ratio test of `more` against `less`.
+fn p_value(more: &Fit, less: &Fit) -> f64 {
+    likelihood_ratio_p(more.log_likelihood - less.log_likelihood, more.values.len().saturating_sub(less.values.len()))
 }
 
 fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
@@ -341,11 +179,7 @@ fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
             continue;
         }
         let share = 1.0 - search.unexplained(fit).powi(2) / before.max(f64::MIN_POSITIVE);
-        all.push(Single {
-            name: term.name(),
-            share: share.clamp(-1.0, 1.0),
-            p_value: likelihood_ratio(fit, &search.nominal),
-        });
+        all.push(Single { name: term.name(), share: share.clamp(-1.0, 1.0), p_value: p_value(fit, &search.nominal) });
     }
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
     all
@@ -387,20 +221,20 @@ const OVER_NOISE: f64 = 1.5;
 /// Factor by which refitted values have to lessen what is missing before they are told as wrong.
 const VALUES_MATTER: f64 = 1.15;
 
-fn finding(search: &Search<'_>, fit: &Fit, [given, refitted, improved]: [f64; 3], noise: f64) -> Finding {
+fn verdict(search: &Search<'_>, fit: &Fit, [given, refitted, improved]: [f64; 3], noise: f64) -> Verdict {
     let above = |rms: f64| (rms * rms - noise * noise).max(0.0).sqrt();
     let effort = search.scales.effort;
     if fit.model == search.nominal.model {
         let is_unknown = refitted > OVER_NOISE * noise && above(refitted) > UNKNOWN_PART_OF_EFFORT * effort;
         return match (is_unknown, given > VALUES_MATTER * refitted && above(given) > LEAST_PART_OF_EFFORT * effort) {
-            (true, _) => Finding::Unknown,
-            (false, true) => Finding::Parameters,
-            (false, false) => Finding::NoMismatch,
+            (true, _) => Verdict::Unknown,
+            (false, true) => Verdict::Parameters,
+            (false, false) => Verdict::NoMismatch,
         };
     }
     let is_left = improved > OVER_NOISE * noise
         && (above(improved) > MOST_LEFT * above(refitted) || a_curve_does_better(search, fit));
-    if is_left { Finding::PartlyExplained } else { Finding::Explained }
+    if is_left { Verdict::PartlyExplained } else { Verdict::Explained }
 }
 
 /// Knots of the free curve over position.
@@ -461,7 +295,7 @@ mod tests {
     #[test]
     fn a_drive_with_nothing_missing_is_left_alone_and_its_noise_is_known() {
         let outcome = identified(&TestDrive::PLAIN, 0.8, 4.0, 11);
-        assert_eq!(outcome.finding, Finding::NoMismatch);
+        assert_eq!(outcome.verdict, Verdict::NoMismatch);
         assert!(outcome.named.is_empty() && outcome.alternatives.is_empty());
         let left = rms(&outcome.missing[1]);
         // Both are root mean squares of 12 000 rows in a band of some hertz: a tenth is three deviations.
@@ -471,7 +305,7 @@ mod tests {
     #[test]
     fn wrong_values_are_no_physics() {
         let outcome = identified(&TestDrive::PLAIN, 1.0, 7.0, 21);
-        assert_eq!(outcome.finding, Finding::Parameters);
+        assert_eq!(outcome.verdict, Verdict::Parameters);
         assert!(outcome.named.is_empty());
         assert!((outcome.chosen.values[index::INERTIA] - 0.8).abs() < 2e-3);
         assert!((outcome.chosen.values[index::VISCOUS] - 4.0).abs() < 2e-2);
@@ -480,7 +314,7 @@ mod tests {
     #[test]
     fn dry_friction_is_named_alone_with_its_level_and_an_interval_that_holds_it() {
         let outcome = identified(&TestDrive { coulomb: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 31);
-        assert_eq!(outcome.finding, Finding::Explained);
+        assert_eq!(outcome.verdict, Verdict::Explained);
         assert_eq!(outcome.chosen.model.names(), ["coulomb_friction"]);
         let at = outcome.chosen.model.values_of(0).start;
         let (level, [low, high]) = (outcome.chosen.values[at], outcome.intervals[at]);
@@ -495,7 +329,7 @@ mod tests {
     fn a_white_force_is_unknown_and_nothing_is_named_for_it() {
         let outcome = identified(&TestDrive { disturbance: 0.05, ..TestDrive::PLAIN }, 0.8, 4.0, 41);
         assert!(outcome.named.is_empty(), "{:?}", outcome.chosen.model.names());
-        assert_eq!(outcome.finding, Finding::Unknown);
+        assert_eq!(outcome.verdict, Verdict::Unknown);
     }
 
     #[test]

@@ -1,11 +1,19 @@
 //! From recordings and a rig file to the drive's trials and nominal law.
 
-use super::outcome::{NominalDrive, thinning};
+use super::nominal::NominalDrive;
 use super::trial::DriveTrial;
 use crate::effects::Resolved;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
+
+/// Rows that are looked at of all trials together: more are thinned, with the effort's mean over each interval exact.
+const MOST_ROWS: usize = 45_000;
+
+/// Recorded rows that become one encoder row.
+fn thinning(rows: usize) -> usize {
+    rows.div_ceil(MOST_ROWS).max(1)
+}
 
 /// Whether the rig has a drive whose effort every trial holds.
 #[must_use]

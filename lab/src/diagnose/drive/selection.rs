@@ -10,6 +10,7 @@ use super::fit::{Data, Effort, Fit, fit};
 use super::law::Side;
 use super::links;
 use super::term::{Scales, Term};
+use crate::diagnose::model_comparison::vuong;
 
 /// What a search works on.
 pub struct Search<'a> {
@@ -202,37 +203,4 @@ fn distinct_all(mut fits: Vec<Fit>) -> Vec<Fit> {
         }
     }
     kept
-}
-
-/// Mean difference of two models' likelihoods over its deviation, rows taken together in blocks.
-#[must_use]
-pub fn vuong(more: &[f64], less: &[f64], block: usize) -> f64 {
-    let blocks: Vec<f64> = more
-        .chunks_exact(block)
-        .zip(less.chunks_exact(block))
-        .map(|(more, less)| more.iter().zip(less).map(|(more, less)| more - less).sum())
-        .collect();
-    let count = blocks.len() as f64;
-    if count < 2.0 {
-        return 0.0;
-    }
-    let mean = blocks.iter().sum::<f64>() / count;
-    let variance = blocks.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    if variance > 0.0 { mean * (count / variance).sqrt() } else { 0.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_gain_in_one_block_alone_is_no_gain_throughout() {
-        let less = vec![0.0; 400];
-        let mut once = less.clone();
-        once[50..60].fill(30.0);
-        assert!(vuong(&once, &less, 20) < 1.1);
-        let throughout: Vec<f64> = (0..400).map(|row| 0.7 + 0.1 * f64::from(row % 3)).collect();
-        assert!(vuong(&throughout, &less, 20) > 30.0);
-        assert_eq!(vuong(&once[..30], &less[..30], 20), 0.0);
-    }
 }

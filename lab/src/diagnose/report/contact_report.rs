@@ -4,15 +4,16 @@ use super::channel::{self, Residuals};
 use super::contact_residual::contact_residual;
 use super::diagnosis::{Diagnosis, Evidence, Finding, Location, Nominal, Physics, PlotData, Trace};
 use super::summary;
-use super::verdict::verdict;
 use crate::diagnose::contact::fit::Data;
 use crate::diagnose::contact::held_out::rms;
 use crate::diagnose::contact::learned::{self, LearnedCurve};
 use crate::diagnose::contact::model::index;
-use crate::diagnose::contact::outcome::{Finding as Standing, NamedTerm, Outcome};
+use crate::diagnose::contact::outcome::Outcome;
 use crate::diagnose::contact::trial::ContactTrial;
+use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::phase;
 use crate::diagnose::term::Term;
+use crate::diagnose::verdict::Verdict;
 use crate::effects::{self, Effect as _, LEARNED, Place, slug};
 use crate::page::quantity;
 use crate::rig::{Contact, Coordinate, Rig};
@@ -29,7 +30,7 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
     let fit = residuals(outcome).quality(CHANNEL, coordinate.force_unit(), 0.5 / outcome.nominal.model.scales.step_s);
     let residual = contact_residual(outcome, coordinate);
-    let locations = if outcome.finding == Standing::NoMismatch { Vec::new() } else { residual.locations() };
+    let locations = if outcome.verdict == Verdict::NoMismatch { Vec::new() } else { residual.locations() };
     let answer = outcome.chosen.model.names(outcome.known_terms);
     let alternatives: Vec<_> = outcome
         .alternatives
@@ -42,7 +43,7 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         .collect();
     let mut diagnosis = Diagnosis {
         schema: "palpate.diagnosis/1",
-        verdict: verdict(outcome.finding),
+        verdict: outcome.verdict,
         summary: String::new(),
         physics: physics(outcome, coordinate, &locations),
         alternatives,
@@ -93,7 +94,7 @@ pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
     let fit = outcome.learned.as_ref().map_or(named, |curve| &curve.fit);
     let ends = (!outcome.named.is_empty() && outcome.learned.is_none()).then_some(outcome.intervals.as_slice());
     let mut rig = with_law(given, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), ends);
-    if outcome.finding == Standing::NoMismatch {
+    if outcome.verdict == Verdict::NoMismatch {
         rig.contact = given.contact;
     }
     rig
@@ -138,7 +139,7 @@ fn with_law(
 
 fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
     let named: Vec<Physics> = outcome.named.iter().map(|named| described(outcome, named, coordinate)).collect();
-    let is_left = matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown);
+    let is_left = matches!(outcome.verdict, Verdict::PartlyExplained | Verdict::Unknown);
     let rest = is_left.then(|| {
         let mut rest = unknown(locations, !named.is_empty());
         if let Some(curve) = &outcome.learned {

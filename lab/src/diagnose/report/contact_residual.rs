@@ -2,8 +2,9 @@
 
 use super::contact_report::CHANNEL;
 use super::residual_map::{ChannelResidual, ResidualRow};
-use crate::diagnose::contact::outcome::{Finding, Outcome};
+use crate::diagnose::contact::outcome::Outcome;
 use crate::diagnose::phase::Phase;
+use crate::diagnose::verdict::Verdict;
 use crate::rig::Coordinate;
 
 /// The rows of `outcome` that count.
@@ -51,8 +52,8 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
 
 /// The mismatch that is located: of given values where nothing but them is wrong, else of refitted ones.
 fn before(outcome: &Outcome) -> &[Vec<f64>] {
-    match outcome.finding {
-        Finding::NoMismatch | Finding::Parameters => &outcome.residuals[0],
+    match outcome.verdict {
+        Verdict::NoMismatch | Verdict::Parameters => &outcome.residuals[0],
         _ => &outcome.residuals[1],
     }
 }

@@ -4,14 +4,14 @@ use super::channel::{self, Residuals};
 use super::diagnosis::{Diagnosis, Evidence, Location, Nominal, Phase, Physics, PlotData, Trace};
 use super::drive_residual::drive_residual;
 use super::summary;
-use super::verdict::verdict;
 use crate::diagnose::drive::held_out::rms;
 use crate::diagnose::drive::input::Inputs;
 use crate::diagnose::drive::law::DriveLaw;
 use crate::diagnose::drive::model::index;
 use crate::diagnose::drive::named::{NamedEffect, named};
-use crate::diagnose::drive::outcome::{Finding as Standing, Outcome};
+use crate::diagnose::drive::outcome::Outcome;
 use crate::diagnose::drive::term::Term;
+use crate::diagnose::verdict::Verdict;
 use crate::effects::{self, Place, slug};
 use crate::rig::{Coordinate, Drive, Rig};
 
@@ -25,7 +25,7 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let residuals = residuals(outcome);
     let fit = residuals.quality(CHANNEL, coordinate.force_unit(), outcome.band_hz);
     let residual = drive_residual(outcome, coordinate);
-    let locations = if outcome.finding == Standing::NoMismatch { Vec::new() } else { residual.locations() };
+    let locations = if outcome.verdict == Verdict::NoMismatch { Vec::new() } else { residual.locations() };
     let answer = outcome.chosen.model.names();
     let alternatives: Vec<_> = outcome
         .alternatives
@@ -42,7 +42,7 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         .collect();
     let mut diagnosis = Diagnosis {
         schema: "palpate.diagnosis/1",
-        verdict: verdict(outcome.finding),
+        verdict: outcome.verdict,
         summary: String::new(),
         physics: physics(outcome, coordinate, &locations),
         alternatives,
@@ -98,7 +98,7 @@ pub fn table(found: &NamedEffect, coordinate: Coordinate) -> crate::rig::Effect 
 #[must_use]
 pub fn refined(given: &Rig, base: &Rig, outcome: &Outcome) -> Rig {
     let values = &outcome.chosen.values;
-    let is_wrong = outcome.finding != Standing::NoMismatch;
+    let is_wrong = outcome.verdict != Verdict::NoMismatch;
     let mut rig = base.clone();
     rig.drive = given.drive.map(|drive| Drive {
         inertia: if is_wrong { values[index::INERTIA] } else { drive.inertia },
@@ -122,7 +122,7 @@ fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) ->
             Some(described(&effect, coordinate, Evidence { held_out_gain: term.held_out_share, p_value: term.p_value }))
         })
         .collect();
-    let is_left = matches!(outcome.finding, Standing::PartlyExplained | Standing::Unknown);
+    let is_left = matches!(outcome.verdict, Verdict::PartlyExplained | Verdict::Unknown);
     let rest = is_left.then(|| unknown(locations, !named.is_empty()));
     channel::in_order(named, rest)
 }

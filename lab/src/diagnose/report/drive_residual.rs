@@ -2,8 +2,9 @@
 
 use super::drive_report::{CHANNEL, PHASE};
 use super::residual_map::{ChannelResidual, ResidualRow};
-use crate::diagnose::drive::outcome::{Finding, Outcome};
+use crate::diagnose::drive::outcome::Outcome;
 use crate::diagnose::drive::trial::DriveTrial;
+use crate::diagnose::verdict::Verdict;
 use crate::rig::Coordinate;
 
 /// Length of a stretch that is told as a place, s; a shorter trial is one stretch.
@@ -52,8 +53,8 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
 
 /// The mismatch that is located: of given values where nothing but them is wrong, else of refitted ones.
 fn before(outcome: &Outcome) -> &[Vec<f64>] {
-    match outcome.finding {
-        Finding::NoMismatch | Finding::Parameters => &outcome.missing[0],
+    match outcome.verdict {
+        Verdict::NoMismatch | Verdict::Parameters => &outcome.missing[0],
         _ => &outcome.missing[1],
     }
 }

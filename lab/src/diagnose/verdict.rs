@@ -1,9 +1,7 @@
-//! The verdict's word.
+//! How it stands with the simulation, or with a part of it.
 
 use schemars::JsonSchema;
 use serde::Serialize;
-
-use crate::diagnose::drive::outcome::Finding;
 
 /// What came out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
@@ -19,16 +17,4 @@ pub enum Verdict {
     PartlyExplained,
     /// Something is missing that no effect explains.
     Unknown,
-}
-
-/// The word of what was found of a channel.
-#[must_use]
-pub fn verdict(finding: Finding) -> Verdict {
-    match finding {
-        Finding::NoMismatch => Verdict::NoMismatch,
-        Finding::Parameters => Verdict::Parameters,
-        Finding::Explained => Verdict::Explained,
-        Finding::PartlyExplained => Verdict::PartlyExplained,
-        Finding::Unknown => Verdict::Unknown,
-    }
 }

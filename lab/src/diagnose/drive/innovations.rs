@@ -1,0 +1,14 @@
+//! Innovations of a trial.
+
+/// What the filter makes of a trial, row by row.
+#[derive(Debug, Clone, Default)]
+pub struct Innovations {
+    /// Encoder row less its prediction, m or rad; zero where a stretch starts.
+    pub innovation: Vec<f64>,
+    /// Variance of it.
+    pub variance: Vec<f64>,
+    /// Velocity of the measured side after the correction, m/s or rad/s.
+    pub velocity: Vec<f64>,
+    /// Smoothed force that the law lacks, mean over the interval that ends at the row, N or N m. Empty unless asked for.
+    pub disturbance: Vec<f64>,
+}

@@ -1,0 +1,131 @@
+//! The law that a rig file states of its drive, and its refitted values.
+
+use super::fit::{Data, Effort, Ended, Fit, fit};
+use super::held_out::{missing_force, rms};
+use super::law::Side;
+use super::model::{Model, index};
+use super::named::known;
+use super::noise::{Noise, white_variance};
+use super::term::{Scales, Term};
+use super::trial::DriveTrial;
+use crate::effects::Resolved;
+
+/// What a rig file says of a drive.
+#[derive(Clone)]
+pub struct NominalDrive {
+    /// kg or kg m^2.
+    pub inertia: f64,
+    /// N s/m or N m s/rad.
+    pub viscous: f64,
+    /// Whether positions are angles.
+    pub is_rotary: bool,
+    /// On which side of the transmission the encoder sits, where that is known.
+    pub encoder: Option<Side>,
+    /// Step of the encoder, m or rad; zero where it is not known.
+    pub resolution: f64,
+    /// Effects that it already holds: nominal, and refitted like the other values.
+    pub effects: Vec<Resolved>,
+}
+
+/// Fewest encoder rows that a drive is identified from.
+const FEWEST_ROWS: usize = 200;
+
+/// Inertia and viscous friction that `trials` teach; `None` where they show no motion.
+#[must_use]
+pub fn refitted(trials: &[DriveTrial], rig: &NominalDrive) -> Option<[f64; 2]> {
+    let scales = scales(trials, rig)?;
+    let variance = encoder_variance(trials, &scales);
+    let data = Data { trials, least_encoder_variance: 0.3 * variance };
+    let fit = nominal_fit(&data, rig, scales, variance)?;
+    Some([fit.values[index::INERTIA], fit.values[index::VISCOUS]])
+}
+
+/// Missing force of `trials` under the values of `rig`, a column a trial, seen up to 5 Hz; the effort's delay alone is fitted.
+/// `None` where they show no motion.
+#[must_use]
+pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Vec<f64>>> {
+    let scales = scales(trials, rig)?;
+    let variance = encoder_variance(trials, &scales);
+    let data = Data { trials, least_encoder_variance: 0.3 * variance };
+    let encoder = rig.encoder.unwrap_or(Side::Load);
+    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
+        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
+    let model = Model { terms, scales };
+    let band = LOWEST_BAND_HZ.min(0.1 / scales.period_s);
+    let noise =
+        Noise { ln_disturbance: 0.0, ln_encoder: variance.ln() }.with_crossing(band, scales.period_s, rig.inertia);
+    let under = |rows: f64| {
+        let values = [vec![rig.inertia, rig.viscous, rows * scales.period_s], values.concat()].concat();
+        let fit = Fit { model: model.clone(), values, noise, log_likelihood: 0.0, ended: Ended::Converged };
+        missing_force(&data, &fit, &noise)
+    };
+    DELAY_STARTS.iter().map(|rows| under(*rows)).min_by(|a, b| rms(a).total_cmp(&rms(b)))
+}
+
+/// Band in which a missing force is looked for even where the nominal law leaves nothing, Hz.
+pub const LOWEST_BAND_HZ: f64 = 5.0;
+
+/// Sizes of `trials`; `None` where they show no motion.
+#[must_use]
+pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
+    let rows: usize = trials.iter().map(DriveTrial::len).sum();
+    let largest = |of: &dyn Fn(&DriveTrial) -> f64| trials.iter().map(of).fold(0.0, f64::max);
+    let effort = largest(&|trial| deviation(&trial.effort));
+    let speed = largest(&|trial| usual_speed(trial));
+    let position = || trials.iter().flat_map(|trial| trial.position.iter());
+    let lowest = position().copied().fold(f64::INFINITY, f64::min);
+    let travel = position().copied().fold(f64::NEG_INFINITY, f64::max) - lowest;
+    let moves = rows >= FEWEST_ROWS && effort > 0.0 && speed > 0.0 && travel > 0.0;
+    moves.then(|| Scales {
+        effort,
+        peak_effort: largest(&|trial| trial.effort.iter().fold(0.0, |peak: f64, effort| peak.max(effort.abs()))),
+        speed,
+        travel,
+        lowest,
+        period_s: trials[0].period_s,
+        duration_s: largest(&DriveTrial::duration_s),
+        inertia: rig.inertia,
+        viscous: rig.viscous,
+        resolution: rig.resolution.max(1e-6 * travel),
+        is_rotary: rig.is_rotary,
+    })
+}
+
+/// Greatest mean speed over some rows.
+fn usual_speed(trial: &DriveTrial) -> f64 {
+    const ROWS: usize = 8;
+    let spans = trial.position.windows(ROWS + 1).zip(trial.time.windows(ROWS + 1));
+    spans.map(|(x, t)| ((x[ROWS] - x[0]) / (t[ROWS] - t[0])).abs()).fold(0.0, f64::max)
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// Variance of the encoder, m^2 or rad^2: that of the quietest trial, and no less than a third of what rounding to the encoder's step leaves.
+#[must_use]
+pub fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
+    let white = trials.iter().map(|trial| white_variance(&trial.position)).fold(f64::INFINITY, f64::min);
+    white.max(0.3 * scales.resolution.powi(2) / 12.0)
+}
+
+/// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
+const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
+
+/// The law that `rig` states, its values refitted; `None` where nothing could be.
+#[must_use]
+pub fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_variance: f64) -> Option<Fit> {
+    let encoder = rig.encoder.unwrap_or(Side::Load);
+    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
+        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
+    let model = Model { terms, scales };
+    let noise = Noise { ln_disturbance: scales.starting_density().ln(), ln_encoder: encoder_variance.ln() };
+    let fits = DELAY_STARTS.map(|rows| {
+        let start = [vec![scales.inertia, scales.viscous, rows * scales.period_s], values.concat()].concat();
+        fit(data, &model, &start, noise, Effort::FULL)
+    });
+    let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
+    best.log_likelihood.is_finite().then_some(best)
+}

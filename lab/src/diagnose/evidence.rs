@@ -1,0 +1,23 @@
+//! What speaks for a term of a law.
+
+/// A term that is named, beside the others of its law.
+#[derive(Debug, Clone)]
+pub struct NamedTerm {
+    /// Its place among the terms of the model.
+    pub at: usize,
+    /// Share of the held-out power above the noise that it takes, beside the other terms.
+    pub held_out_share: f64,
+    /// Likelihood-ratio test of it, Bonferroni over all terms tried.
+    pub p_value: f64,
+}
+
+/// A term tried alone.
+#[derive(Debug, Clone, Copy)]
+pub struct Single {
+    /// Its name.
+    pub name: &'static str,
+    /// Share of the unexplained power that it takes, rows of its fit.
+    pub share: f64,
+    /// Likelihood-ratio test of it, for itself.
+    pub p_value: f64,
+}

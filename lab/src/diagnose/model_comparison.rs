@@ -1,0 +1,44 @@
+//! Tests that compare two fitted models.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF as _};
+
+/// Probability of as large a likelihood ratio, in nats of log likelihood that the larger model gains, where the smaller one is true;
+/// `values` is how many the larger has more (S. S. Wilks, *Ann. Math. Stat.* 9, 1938).
+#[must_use]
+pub fn likelihood_ratio_p(gain: f64, values: usize) -> f64 {
+    ChiSquared::new(values.max(1) as f64).map_or(1.0, |chi| chi.sf(2.0 * gain.max(0.0)))
+}
+
+/// Vuong's statistic: the mean difference of two models' log likelihoods over its deviation, rows taken together in blocks of `block`
+/// (Q. H. Vuong, *Econometrica* 57, 1989); zero where there are fewer than two blocks.
+#[must_use]
+pub fn vuong(more: &[f64], less: &[f64], block: usize) -> f64 {
+    let blocks: Vec<f64> = more
+        .chunks_exact(block)
+        .zip(less.chunks_exact(block))
+        .map(|(more, less)| more.iter().zip(less).map(|(more, less)| more - less).sum())
+        .collect();
+    let count = blocks.len() as f64;
+    if count < 2.0 {
+        return 0.0;
+    }
+    let mean = blocks.iter().sum::<f64>() / count;
+    let variance = blocks.iter().map(|block| (block - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    if variance > 0.0 { mean * (count / variance).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gain_in_one_block_alone_is_no_gain_throughout() {
+        let less = vec![0.0; 400];
+        let mut once = less.clone();
+        once[50..60].fill(30.0);
+        assert!(vuong(&once, &less, 20) < 1.1);
+        let throughout: Vec<f64> = (0..400).map(|row| 0.7 + 0.1 * f64::from(row % 3)).collect();
+        assert!(vuong(&throughout, &less, 20) > 30.0);
+        assert_eq!(vuong(&once[..30], &less[..30], 20), 0.0);
+    }
+}
