@@ -103,7 +103,8 @@ def diagnose(recordings, rig, *, simulation=None, load=None, effort=None, seed: 
     simulation: what your own simulator gave for each recording, in the same order and columns.
     load: what your rigid-body model explains of the effort, N or N m, an array a recording: the drive's balance is effort - load.
     effort: the effort at the tool, N or N m, an array a recording.
-    seed: of the simulated replicas; the same seed gives the same answer to the bit.
+    seed: of the noise that is drawn to estimate what the sensors alone would show in the drive; the contact draws none. The same seed
+        gives the same answer to the bit.
     progress: called with a sentence at each step.
 
     Raises InputError for a file, array or value at fault. Ctrl-C ends the wait at once; the work itself ends at its next step.

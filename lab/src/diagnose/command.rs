@@ -42,7 +42,7 @@ pub struct DiagnoseArgs {
     /// Write the reference trajectory that would tell the alternatives apart, where there are any
     #[arg(long, value_name = "FILE.csv")]
     pub experiment: Option<PathBuf>,
-    /// Seed of the replicates: the same seed, the same answer
+    /// Seed of the noise that is drawn to estimate what the sensors alone would show in the drive: the same seed, the same answer
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
 }

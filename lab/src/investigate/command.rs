@@ -45,7 +45,7 @@ pub struct InvestigateArgs {
     /// Folder for every round, the report and the model; an investigation that it holds is resumed
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Seed of diagnosis and simulated noise: the same seed, the same answer
+    /// Seed of the noise that is simulated, and drawn by the diagnosis: the same seed, the same answer
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
 }

@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use super::verdict::Verdict;
 pub use crate::diagnose::check::Finding;
 pub use crate::diagnose::experiment::Experiment;
 pub use crate::diagnose::phase::Phase;
+pub use crate::diagnose::verdict::Verdict;
 
 /// The diagnosis, in the layout of `palpate.diagnosis/1`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -60,7 +60,7 @@ pub struct Physics {
 pub struct Evidence {
     /// Share of the held-out residual's energy that it takes away: 1 - (rms after / rms before)^2, in its channel.
     pub held_out_gain: f64,
-    /// Probability that chance alone does as much somewhere among all effects, from replicates.
+    /// Probability that chance alone does as much somewhere among all effects: likelihood-ratio test, Bonferroni over all that are tried.
     pub p_value: f64,
 }
 
