@@ -97,4 +97,61 @@ mod tests {
         assert_eq!(alarms(|k| 0.08 * if k % 2 == 0 { 1.0 } else { -1.0 }, 5000), 0, "a residual within the allowance");
         assert_eq!(alarms(|_| f32::NAN, 500), 0, "what is no number is no change");
     }
+
+    /// The sum, the mean square and the alarm of the printed formula, in double precision.
+    #[test]
+    fn the_detector_is_its_formula() {
+        let config = ChangeConfig { noise: 0.5, allowance: 2.0, clip: 8.0, threshold: 9.0, settling: 2, memory: 4 };
+        let innovations = [9.0, 9.0, 0.25, 1.0, 2.0, 1.0, 0.0, 4.0, 4.0, 4.0, 9.0, 9.0, 1.0, 5.0, 1e3, 1e3, 1e3, 0.5];
+        let (mut sum, mut mean_square, mut since, mut alarms) = (0.0_f64, 0.0_f64, 0, 0);
+        let mut state = ChangeState::default();
+        for (row, innovation) in innovations.into_iter().enumerate() {
+            let changed = config.update(&mut state, innovation);
+            let mut expected = false;
+            if since < 2 {
+                since += 1;
+            } else {
+                let usual = mean_square.max(0.25);
+                let ratio = (f64::from(innovation).powi(2) / usual).min(8.0);
+                mean_square += (ratio * usual - mean_square) / 4.0;
+                sum = (sum + ratio - 2.0).max(0.0);
+                expected = sum > 9.0;
+                if expected {
+                    (sum, since) = (0.0, 0);
+                    alarms += 1;
+                }
+            }
+            assert_eq!(changed, expected, "row {row}");
+            let close = |found: f32, expected: f64| (f64::from(found) - expected).abs() <= 1e-5 * expected.abs();
+            assert!(close(state.sum, sum) && close(state.mean_square, mean_square), "row {row}: {state:?}");
+        }
+        assert_eq!(alarms, 3);
+    }
+
+    #[test]
+    fn a_sum_at_its_threshold_is_no_change_yet() {
+        for (threshold, changed) in [(6.0, false), (5.5, true)] {
+            let config = ChangeConfig { noise: 1.0, allowance: 2.0, clip: 8.0, threshold, settling: 0, memory: 4 };
+            assert_eq!(config.update(&mut ChangeState::default(), 4.0), changed, "8 less 2 against {threshold}");
+        }
+    }
+
+    #[test]
+    fn settings_of_the_detector_are_checked_at_their_limits() {
+        let d = ChangeConfig::default();
+        for (config, accepted) in [
+            (d, true),
+            (ChangeConfig { noise: 0.0, ..d }, false),
+            (ChangeConfig { allowance: 1.0, ..d }, true),
+            (ChangeConfig { allowance: 0.99, ..d }, false),
+            (ChangeConfig { allowance: 25.0, ..d }, false),
+            (ChangeConfig { allowance: 24.9, ..d }, true),
+            (ChangeConfig { clip: f32::INFINITY, ..d }, false),
+            (ChangeConfig { threshold: 0.0, ..d }, false),
+            (ChangeConfig { memory: 1, ..d }, false),
+            (ChangeConfig { memory: 2, ..d }, true),
+        ] {
+            assert_eq!(config.check().ok(), accepted.then_some(config), "{config:?}");
+        }
+    }
 }

@@ -70,3 +70,24 @@ impl Impedance {
         (self.stiffness + self.damping).is_finite()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pair_is_finite_where_its_sum_is() {
+        let finite = |stiffness, damping| Impedance { stiffness, damping }.is_finite();
+        assert!(finite(1e30, 1e30) && finite(3e38, 0.0) && finite(3e38, -3e38));
+        assert!(!finite(3e38, 3e38) && !finite(f32::INFINITY, 0.0) && !finite(0.0, f32::NAN));
+    }
+
+    #[test]
+    fn a_residual_is_force_less_prediction() {
+        let row = Observation { penetration: 2.0, rate: -3.0, force: 7.0 };
+        let estimate = Impedance { stiffness: 5.0, damping: 0.5 };
+        assert_eq!((row.predicted_by(estimate), row.residual(estimate)), (8.5, -1.5));
+        let direction = Impedance { stiffness: 1.0, damping: -2.0 };
+        assert_eq!(estimate.moved(-2.0, direction), Impedance { stiffness: 3.0, damping: 4.5 });
+    }
+}

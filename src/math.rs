@@ -88,3 +88,42 @@ pub fn nearest_power_of_two(x: f32) -> f32 {
 pub const fn power_of_two_below(x: f32) -> f32 {
     f32::from_bits(x.to_bits() & 0x7f80_0000)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_two_that_do_not_differ_or_do_not_compare_the_second_is_taken() {
+        assert_eq!([larger(1.0, 2.0), larger(2.0, 1.0), smaller(1.0, 2.0), smaller(2.0, 1.0)], [2.0, 2.0, 1.0, 1.0]);
+        for of in [larger, smaller] {
+            assert!(of(0.0, -0.0).is_sign_negative() && of(-0.0, 0.0).is_sign_positive());
+            assert_eq!(of(f32::NAN, 1.0), 1.0);
+            assert!(of(1.0, f32::NAN).is_nan());
+        }
+    }
+
+    #[test]
+    fn powers_of_two_are_the_nearest_and_the_one_below() {
+        for (x, nearest, below) in
+            [(1.0, 1.0, 1.0), (1.41, 1.0, 1.0), (1.42, 2.0, 1.0), (0.3, 0.25, 0.25), (3.0, 4.0, 2.0)]
+        {
+            assert_eq!((nearest_power_of_two(x), power_of_two_below(x)), (nearest, below), "{x}");
+        }
+        assert_eq!(nearest_power_of_two(f32::MAX), 2.0_f32.powi(127));
+        assert_eq!(nearest_power_of_two(f32::MIN_POSITIVE), f32::MIN_POSITIVE);
+    }
+
+    #[test]
+    fn a_cube_root_is_exact_to_a_unit_from_subnormal_numbers_to_the_end_of_the_range() {
+        for (x, root) in [
+            (2.0_f32.powi(-147), 2.0_f32.powi(-49)),
+            (2.0_f32.powi(-144), 2.0_f32.powi(-48)),
+            (27.0, 3.0),
+            (1e38, 4.641_589e12),
+        ] {
+            assert!((cbrt(x) / root - 1.0).abs() < 3e-7, "{x:e}: {:e}", cbrt(x));
+        }
+        assert_eq!((cbrt(0.0), cbrt(-2.0)), (0.0, -2.0), "nothing below zero has one here");
+    }
+}

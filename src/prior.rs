@@ -51,3 +51,34 @@ impl Prior {
         Ok(self)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ridge_and_variances_are_inverse_squares() {
+        let prior = Prior { noise: 0.5, stiffness: 4.0, damping: 2.0 };
+        assert_eq!(prior.ridge(), Impedance { stiffness: 1.0 / 64.0, damping: 1.0 / 16.0 });
+        assert_eq!(prior.variances(), Impedance { stiffness: 64.0, damping: 16.0 });
+    }
+
+    #[test]
+    fn a_prior_is_checked_at_its_limits() {
+        let d = Prior { noise: 1.0, stiffness: 8.0, damping: 2.0 };
+        for (prior, accepted) in [
+            (d, true),
+            (Prior { noise: 0.0, ..d }, false),
+            (Prior { stiffness: 0.0, ..d }, false),
+            (Prior { damping: -2.0, ..d }, false),
+            (Prior { stiffness: 0.9e6, ..d }, true),
+            (Prior { stiffness: 1.1e6, ..d }, false),
+            (Prior { stiffness: 0.9e-3, ..d }, false),
+            (Prior { damping: 1.1e6, ..d }, false),
+            (Prior { damping: 0.9e-3, ..d }, false),
+            (Prior { damping: 1.1e-3, ..d }, true),
+        ] {
+            assert_eq!(prior.check().ok(), accepted.then_some(prior), "{prior:?}");
+        }
+    }
+}

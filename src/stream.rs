@@ -244,3 +244,63 @@ impl<L: UpdateLaw> EstimatorState<L> {
         self.last
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stream(config: StreamConfig) -> Stream<8> {
+        Stream::new(config).expect("sound settings")
+    }
+
+    #[test]
+    fn the_movement_is_a_peak_to_peak_that_fades_towards_its_middle() {
+        let mut stream = stream(StreamConfig::BENCH);
+        stream.movement_decay = 0.5;
+        (stream.low, stream.high) = (-9.0, 9.0);
+        assert_eq!(stream.movement(3.0), 0.0, "a contact begins with no movement");
+        stream.in_contact = true;
+        // A quarter of the span from either side: 3 to 7, 4 to 6, 4.5 to 5.5, and 1 below.
+        assert_eq!([7.0, 5.0, 5.0, 1.0].map(|position| stream.movement(position)), [4.0, 2.0, 1.0, 4.25]);
+    }
+
+    fn push(stream: &mut Stream<8>, position: f32, force: f32) -> Event {
+        stream.update(Sample { position, force, elapsed: 1e-3 }).expect("a sample")
+    }
+
+    #[test]
+    fn a_contact_that_is_lost_is_told_once_and_what_it_leaves_is_chosen() {
+        for (contact_loss, left) in [(ContactLoss::Everything, 0), (ContactLoss::Memory, 0), (ContactLoss::Nothing, 5)]
+        {
+            let mut stream = stream(StreamConfig { contact_loss, ..StreamConfig::BENCH });
+            let lost: [bool; 6] = core::array::from_fn(|k| push(&mut stream, 0.01 + 1e-4 * k as f32, 3.0).lost);
+            // The first sample has no rate and is no row.
+            assert_eq!((lost, stream.recent().len()), ([false; 6], 5));
+            let lost: [bool; 8] = core::array::from_fn(|_| push(&mut stream, -0.01, 0.0).lost);
+            assert_eq!(lost, [false, false, false, false, true, false, false, false], "after five samples away");
+            let rows = if contact_loss == ContactLoss::Nothing { stream.recent().len() } else { 5 };
+            assert!(stream.recent().len() >= left && rows >= 5, "{contact_loss:?}: {}", stream.recent().len());
+            assert_eq!(stream.recent().is_empty(), left == 0, "{contact_loss:?}");
+        }
+    }
+
+    #[test]
+    fn little_movement_is_less_than_four_counts() {
+        let little = |four_counts: f32| {
+            let mut stream = stream(StreamConfig::BENCH);
+            (stream.four_counts, stream.movement_decay) = (four_counts, 0.0);
+            push(&mut stream, 0.01, 3.0);
+            core::array::from_fn(|_| push(&mut stream, 0.01, 3.0).flags.contains(Flags::LITTLE_MOVEMENT))
+        };
+        // A tool that does not move at all: zero is less than a count, and not less than no count.
+        assert_eq!((little(1e-3), little(0.0)), ([true; 3], [false; 3]));
+        let mut stream = stream(StreamConfig::BENCH);
+        assert_eq!(push(&mut stream, 0.01, 3.0).flags, Flags::RESTARTED, "the first sample is no row");
+        let still = push(&mut stream, 0.01, 3.0).flags;
+        let mut flags = still;
+        for _ in 0..100 {
+            flags = push(&mut stream, 0.02, 3.0).flags;
+        }
+        assert_eq!((still, flags), (Flags::LITTLE_MOVEMENT, Flags::empty()));
+    }
+}

@@ -139,6 +139,7 @@ mod tests {
     fn it_shows_the_latest_samples_in_order_however_often_it_went_round() {
         let mut window = Window::<5>::new();
         assert_eq!(window.recent().newest(), None);
+        assert!(window.is_empty());
         for k in 0..23_u8 {
             window.push(Observation { force: f32::from(k), ..Observation::default() });
             for count in 0..7 {
@@ -147,6 +148,7 @@ mod tests {
                 assert_eq!(forces(window.recent().last(count)), expected, "after {k}, last {count}");
             }
             assert_eq!(window.recent().newest().map(|o| o.force), Some(f32::from(k)));
+            assert!(!window.is_empty() && !window.recent().is_empty());
             let oldest = k.saturating_sub(4);
             assert_eq!(window.recent().oldest().map(|o| o.force), Some(f32::from(oldest)));
             for back in 0..8 {

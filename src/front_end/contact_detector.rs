@@ -71,4 +71,27 @@ mod tests {
         let left: usize = (0..5).map(|_| usize::from(!detector.update(&mut state, -0.001, 1.0))).sum();
         assert_eq!(left, 1, "the fifth sample outside the surface ends it");
     }
+
+    #[test]
+    fn a_contact_ends_below_its_lower_threshold_and_not_at_it() {
+        let detector = ContactDetectorConfig { on_force: 1.0, off_force: 0.5, off_samples: 1 };
+        for (penetration, force, stays) in [(0.0, 0.5, true), (0.0, 0.49, false), (-1e-6, 0.5, false)] {
+            let mut state = ContactDetectorState { closed: true, away: 0 };
+            assert_eq!(detector.update(&mut state, penetration, force), stays, "{penetration} {force}");
+        }
+    }
+
+    #[test]
+    fn thresholds_are_checked_at_their_limits() {
+        for (on_force, off_force, off_samples, accepted) in [
+            (0.5, 0.5, 1, true),
+            (0.4, 0.5, 1, false),
+            (f32::INFINITY, 0.5, 1, false),
+            (0.5, -0.1, 1, false),
+            (0.5, 0.5, 0, false),
+        ] {
+            let checked = ContactDetectorConfig { on_force, off_force, off_samples }.check();
+            assert_eq!(checked.is_ok(), accepted, "{on_force} {off_force} {off_samples}");
+        }
+    }
 }

@@ -368,4 +368,123 @@ mod tests {
         assert_eq!(last, 0.0);
         assert!(smallest < 1e-17, "it died away, down to {smallest:e}");
     }
+
+    /// Units of powers of two, so that every conversion is exact.
+    fn scaled(velocity: Velocity, bilateral: bool) -> FrontEnd {
+        let units = Units { penetration: 0.25, rate: 0.5, force: 2.0 };
+        let config = FrontEndConfig { surface: 1.0, velocity, bilateral, units, ..FrontEndConfig::BENCH };
+        FrontEnd::new(config).expect("sound settings")
+    }
+
+    #[test]
+    fn a_sample_is_taken_from_the_surface_in_internal_units() {
+        let front_end = scaled(Velocity::Paper, true);
+        assert_eq!(front_end.internal(&Sample { position: 1.5, force: 3.0, elapsed: 1e-3 }), (2.0, 1.5));
+        assert_eq!(front_end.internal(&Sample { position: 0.5, force: -3.0, elapsed: 1e-3 }), (-2.0, -1.5));
+    }
+
+    #[test]
+    fn a_row_is_the_mean_and_the_slope_of_two_samples() {
+        let previous = PreviousSample { penetration: -1.0, depth: 1.0, force: 3.0 };
+        let now = PreviousSample { penetration: 3.0, depth: 4.0, force: 6.0 };
+        // One internal unit of penetration a second is half one of rate.
+        for (velocity, rate) in [(Velocity::Paper, 4.0 / 0.125 * 0.5), (Velocity::Matched, 3.0 / 0.125 * 0.5)] {
+            let row = scaled(velocity, false).unfiltered_row(&previous, &now, 0.125);
+            assert_eq!(row, Observation { penetration: 2.5, rate, force: 4.5 });
+        }
+    }
+
+    #[test]
+    fn a_sample_is_accepted_up_to_the_largest_magnitude() {
+        let front_end = paper();
+        let most = FrontEnd::MAX_MAGNITUDE;
+        let fault = |position, force, elapsed| front_end.validated(&Sample { position, force, elapsed }).err();
+        for value in [most, -most] {
+            assert_eq!(fault(value, 0.0, 1e-3), None);
+            assert_eq!(fault(0.0, value, 1e-3), None);
+            assert_eq!(fault(value * 1.001, 0.0, 1e-3), Some(Rejection::OutOfRange(Field::Position)));
+            assert_eq!(fault(0.0, value * 1.001, 1e-3), Some(Rejection::OutOfRange(Field::Force)));
+        }
+        for elapsed in [0.0, -1e-3] {
+            assert_eq!(fault(0.0, 0.0, elapsed), Some(Rejection::OutOfRange(Field::Elapsed)));
+        }
+        assert_eq!(fault(f32::NAN, 0.0, 1e-3), Some(Rejection::NotFinite(Field::Position)));
+        assert_eq!(fault(0.0, f32::INFINITY, 1e-3), Some(Rejection::NotFinite(Field::Force)));
+        assert_eq!(fault(0.0, 0.0, f32::NAN), Some(Rejection::NotFinite(Field::Elapsed)));
+    }
+
+    #[test]
+    fn a_period_is_the_nominal_one_within_a_ten_thousandth() {
+        let front_end = paper();
+        for (elapsed, nominal) in
+            [(1e-3, true), (1.00009e-3, true), (0.99991e-3, true), (1.0002e-3, false), (0.9998e-3, false)]
+        {
+            assert_eq!(front_end.is_nominal(elapsed), nominal, "{elapsed}");
+        }
+    }
+
+    #[test]
+    fn samples_in_a_row_are_worth_one_by_the_bandwidth_of_the_filter() {
+        for (cutoff, worth) in [(20.0, 22.507_907), (40.0, 11.253_954), (400.0, 1.125_395_4), (450.0, f32::NAN)] {
+            let front_end = FrontEnd::new(FrontEndConfig { cutoff, ..FrontEndConfig::BENCH });
+            // 1000 / (2 * 1.110721 * cutoff), the noise bandwidth of a second-order Butterworth filter.
+            match front_end {
+                Ok(front_end) => assert!((front_end.correlated_samples() / worth - 1.0).abs() < 1e-5, "{cutoff}"),
+                Err(error) => assert_eq!((cutoff, error.parameter), (450.0, "cutoff")),
+            }
+        }
+    }
+
+    /// The short way of the usual sample against the long way of any, on samples with every kind of disturbance.
+    #[test]
+    fn the_short_way_and_the_long_way_tell_the_same_bits() {
+        for velocity in [Velocity::Paper, Velocity::Matched] {
+            for bilateral in [false, true] {
+                let front_end = scaled(velocity, bilateral);
+                let (mut short, mut long) = (FrontEndState::default(), FrontEndState::default());
+                for k in 0..400_u16 {
+                    let phase = f32::from(k % 50) / 50.0;
+                    let mut sample = Sample { position: 1.0 + 0.01 * phase, force: 2.0 * phase, elapsed: 1e-3 };
+                    match k % 37 {
+                        5 => sample.position = f32::NAN,
+                        11 => sample.position = 3e6,
+                        13 => sample.force = 3e6,
+                        17 => sample.force = f32::INFINITY,
+                        19 => sample.elapsed = 2e-3,
+                        23 => sample.elapsed = 1e-3 * 1.5,
+                        29 => sample.elapsed = 0.0,
+                        31 if k > 200 => sample.elapsed = 10.0,
+                        _ => {}
+                    }
+                    let expected = front_end.update_unusual(&mut long, &sample);
+                    assert_eq!(front_end.update(&mut short, sample), expected, "{velocity:?} {bilateral} {k}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_time_of_a_rejected_sample_belongs_to_the_next() {
+        let (front_end, mut state) = (paper(), FrontEndState::default());
+        front_end.update(&mut state, sample(0.0, 1e-3)).expect("a sample");
+        assert!(front_end.update(&mut state, sample(f32::NAN, 2e-3)).is_err());
+        assert!(front_end.update(&mut state, sample(f32::NAN, f32::NAN)).is_err());
+        assert!(front_end.update(&mut state, sample(f32::NAN, -1.0)).is_err());
+        // 4 mm in 2 + 2 ms, by filters that begin with this row.
+        let rate = front_end.update(&mut state, sample(4e-3, 2e-3)).expect("a sample").observation.rate;
+        assert!((rate - 1.0).abs() < 1e-5, "{rate}");
+    }
+
+    #[test]
+    fn a_bilateral_contact_is_always_one() {
+        for (bilateral, contact) in [(true, true), (false, false)] {
+            let (front_end, mut state) = (scaled(Velocity::Matched, bilateral), FrontEndState::default());
+            let reading = front_end.update(&mut state, Sample { position: 0.5, force: 0.0, elapsed: 1e-3 });
+            let reading = reading.expect("a sample");
+            assert_eq!(
+                (reading.contact, reading.observation.penetration),
+                (contact, if bilateral { -2.0 } else { 0.0 })
+            );
+        }
+    }
 }

@@ -99,4 +99,36 @@ mod tests {
             assert!((0.7..=1.42).contains(&(got / want)), "{got} is not within half a power of two of {want}");
         }
     }
+
+    #[test]
+    fn within_a_factor_of_sixteen_either_way_units_are_si() {
+        let of = |factor: f32| {
+            let bench = Units::BENCH_RANGE;
+            let range = [bench.penetration, bench.rate, bench.force].map(|value| value * factor);
+            Units::for_range(Observation { penetration: range[0], rate: range[1], force: range[2] })
+        };
+        for factor in [1.0, 8.0, 15.0, 1.0 / 8.0, 1.0 / 15.0] {
+            assert_eq!(of(factor), Units::SI, "{factor}");
+        }
+        assert_eq!(of(32.0), Units { penetration: 32.0, rate: 32.0, force: 32.0 });
+        assert_eq!(of(1.0 / 64.0), Units { penetration: 1.0 / 64.0, rate: 1.0 / 64.0, force: 1.0 / 64.0 });
+        for no_range in [0.0, f32::INFINITY, f32::NAN, 1e-40] {
+            assert_eq!(of(no_range), Units::SI, "{no_range}");
+        }
+    }
+
+    #[test]
+    fn units_are_checked_at_their_limits() {
+        for (unit, accepted) in [(1e-18, true), (1e18, true), (0.9e-18, false), (1.1e18, false), (f32::NAN, false)] {
+            for units in [
+                Units { penetration: unit, ..Units::SI },
+                Units { rate: unit, ..Units::SI },
+                Units { force: unit, ..Units::SI },
+            ] {
+                assert_eq!(units.check().is_ok(), accepted, "{units:?}");
+            }
+        }
+        let units = Units { penetration: 0.25, rate: 0.5, force: 4.0 };
+        assert_eq!(units.impedance(), Impedance { stiffness: 16.0, damping: 8.0 });
+    }
 }

@@ -119,4 +119,39 @@ mod tests {
         assert_eq!(Sym2::ZERO.invert(0.0), None);
         assert_eq!(Sym2 { xx: f32::NAN, xv: 0.0, vv: 1.0 }.invert(0.0), None);
     }
+
+    #[test]
+    fn every_operation_is_that_of_its_matrix() {
+        let m = Sym2 { xx: 4.0, xv: -1.5, vv: 2.0 };
+        assert_eq!(m.plus_outer(0.5, 2.0, -3.0), Sym2 { xx: 6.0, xv: -4.5, vv: 6.5 });
+        assert_eq!(m.scaled(0.5), Sym2 { xx: 2.0, xv: -0.75, vv: 1.0 });
+        assert_eq!(m.stretched(2.0, 3.0), Sym2 { xx: 16.0, xv: -9.0, vv: 18.0 });
+        let y = Impedance { stiffness: 2.0, damping: -3.0 };
+        assert_eq!(m.times(y), Impedance { stiffness: 12.5, damping: -9.0 });
+        assert_eq!(m.quadratic(y), 52.0);
+        // 1 - 2.25 / 8.
+        assert_eq!(m.independence(), 0.71875);
+        for singular in [Sym2 { xx: 0.0, ..m }, Sym2 { vv: 0.0, ..m }, Sym2 { xx: -4.0, ..m }, Sym2 { xv: 4.0, ..m }] {
+            assert_eq!(singular.independence(), 0.0, "{singular:?}");
+        }
+        let solved = m.solve(m.times(y), 0.0).expect("independent");
+        assert!((solved.stiffness - 2.0).abs() < 1e-5 && (solved.damping + 3.0).abs() < 1e-5, "{solved:?}");
+    }
+
+    #[test]
+    fn a_matrix_is_inverted_above_its_floor_and_not_at_it() {
+        // Independence 0.75, exactly.
+        let m = Sym2 { xx: 4.0, xv: 2.0, vv: 4.0 };
+        assert_eq!(m.invert(0.75), None);
+        assert_eq!(m.invert(0.7), Some(Sym2 { xx: 1.0 / 3.0, xv: -1.0 / 6.0, vv: 1.0 / 3.0 }));
+        assert_eq!(Sym2 { xx: 0.0, xv: 0.0, vv: 4.0 }.invert(0.0), None);
+        assert_eq!(Sym2 { xx: -4.0, xv: 0.0, vv: 4.0 }.invert(0.0), None);
+    }
+
+    #[test]
+    fn a_matrix_is_finite_where_its_sum_is() {
+        let finite = |xx, xv, vv| Sym2 { xx, xv, vv }.is_finite();
+        assert!(finite(1e30, 1e30, 1e30) && finite(3e38, -3e38, 3e38));
+        assert!(!finite(3e38, 3e38, 0.0) && !finite(3e38, 0.0, 3e38) && !finite(0.0, f32::NAN, 0.0));
+    }
 }

@@ -212,6 +212,128 @@ mod tests {
     }
 
     #[test]
+    fn the_quantile_is_its_series() {
+        for freedom in [1.0, 2.0, 4.0, 16.0, 1024.0_f32] {
+            let inverse = 1.0 / f64::from(freedom);
+            let series = 1.96 + 2.4 * inverse + 2.0 * inverse * inverse + 6.3 * inverse * inverse * inverse;
+            assert!((f64::from(student_t_975(freedom)) / series - 1.0).abs() < 1e-6, "{freedom}");
+        }
+    }
+
+    /// Factors that are all different and exact, two samples worth one.
+    const ESTIMATOR: IntervalEstimator = IntervalEstimator {
+        unit: Impedance { stiffness: 2.0, damping: 4.0 },
+        force_unit: 8.0,
+        correlated_samples: 2.0,
+        half_count: 0.5,
+        position_variance: 0.25,
+        force_variance: 0.0625,
+    };
+
+    fn step(samples: f32) -> Step {
+        Step {
+            estimate: Impedance { stiffness: 3.0, damping: -0.5 },
+            innovation: 0.75,
+            confidence: crate::quality::Confidence {
+                noise: crate::math::sym2::Sym2 { xx: 0.5, xv: 9.0, vv: 0.125 },
+                noise_gain: crate::math::sym2::Sym2 { xx: 1.5, xv: 9.0, vv: 0.03125 },
+                startup_bias: Impedance { stiffness: -0.25, damping: 0.375 },
+                offset_gain: Impedance { stiffness: 1.25, damping: -2.5 },
+                samples,
+            },
+            fill: 1.0,
+            excitation: 0.625,
+            flags: Flags::RESET,
+        }
+    }
+
+    /// The formula of [`IntervalEstimator`] for one parameter, in double precision.
+    fn width(e: &IntervalEstimator, freedom: f64, of: [f32; 4], stiffness: f32) -> f64 {
+        let [noise, gain, bias, offset] = of.map(f64::from);
+        let stiffness = f64::from(stiffness);
+        let known = f64::from(e.force_variance) + stiffness.powi(2) * f64::from(e.position_variance);
+        let variance = (noise * f64::from(e.correlated_samples)).max(known * gain);
+        let t = 1.96 + 2.4 / freedom + 2.0 / freedom.powi(2) + 6.3 / freedom.powi(3);
+        let surface = 0.95 * offset * stiffness * f64::from(e.half_count);
+        (t.powi(2) * variance + surface.powi(2)).sqrt() + bias.abs()
+    }
+
+    #[test]
+    fn a_half_width_is_made_of_noise_surface_and_bias() {
+        // Samples over two, less two; ten at least where the noise is known beforehand.
+        for (force_variance, samples, freedom) in
+            [(0.0625, 100.0, 48.0), (0.0625, 12.0, 10.0), (0.0, 12.0, 4.0), (0.0, 100.0, 48.0)]
+        {
+            let estimator = IntervalEstimator { force_variance, ..ESTIMATOR };
+            let step = step(samples);
+            let found = estimator.half_width(&step);
+            let c = &step.confidence;
+            let of_k = [c.noise.xx, c.noise_gain.xx, c.startup_bias.stiffness, c.offset_gain.stiffness];
+            let of_b = [c.noise.vv, c.noise_gain.vv, c.startup_bias.damping, c.offset_gain.damping];
+            for (found, of) in [(found.stiffness, of_k), (found.damping, of_b)] {
+                let expected = width(&estimator, freedom, of, step.estimate.stiffness);
+                assert!((f64::from(found) / expected - 1.0).abs() < 1e-6, "{samples}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_variance_that_rounding_made_negative_is_zero_and_one_that_is_none_is_infinite() {
+        let mut step = step(100.0);
+        (step.confidence.noise.xx, step.confidence.noise_gain.xx) = (-0.5, -1.0);
+        (step.confidence.noise.vv, step.confidence.noise_gain.vv) = (f32::NAN, f32::NAN);
+        let found = ESTIMATOR.half_width(&step);
+        // The surface alone, 0.95 * 1.25 * 3 * 0.5, and the bias.
+        assert!((found.stiffness / (1.781_25 + 0.25) - 1.0).abs() < 1e-6, "{found:?}");
+        assert_eq!(found.damping, f32::INFINITY);
+    }
+
+    #[test]
+    fn an_estimate_is_told_in_si() {
+        let step = step(100.0);
+        let found = ESTIMATOR.assess(&step);
+        let half = ESTIMATOR.half_width(&step);
+        assert_eq!(found.impedance, Impedance { stiffness: 6.0, damping: -2.0 });
+        let expected = Impedance { stiffness: 2.0 * half.stiffness, damping: 4.0 * half.damping };
+        assert_eq!((found.half_width, found.innovation), (expected, 6.0));
+        assert_eq!((found.fill, found.excitation), (1.0, 0.625));
+        assert!(found.flags.contains(Flags::RESET | Flags::NEGATIVE), "{:?}", found.flags);
+    }
+
+    #[test]
+    fn a_window_is_filling_below_ninety_nine_hundredths() {
+        for (fill, filling) in [(0.0, true), (0.98, true), (0.99, false), (1.0, false)] {
+            let found = ESTIMATOR.assess(&Step { fill, ..step(100.0) });
+            assert_eq!(found.flags.contains(Flags::FILLING), filling, "{fill}");
+        }
+    }
+
+    #[test]
+    fn the_sensors_enter_in_internal_units() {
+        use crate::front_end::{FrontEndConfig, Units};
+        let units = Units { penetration: 0.25, rate: 0.5, force: 4.0 };
+        let front_end = FrontEnd::new(FrontEndConfig { units, ..FrontEndConfig::BENCH }).expect("settings");
+        let sensors = SensorResolution { position_resolution: 0.75, force_noise: 2.0 };
+        let found = IntervalEstimator::new(&front_end, sensors);
+        assert_eq!((found.half_count, found.position_variance, found.force_variance), (1.5, 0.75, 0.25));
+        assert_eq!((found.unit, found.force_unit), (Impedance { stiffness: 16.0, damping: 8.0 }, 4.0));
+        assert_eq!(found.correlated_samples, front_end.correlated_samples());
+        for (position_resolution, force_noise, sound) in
+            [(0.0, 0.0, true), (1.0, 1.0, true), (-1.0, 0.0, false), (0.0, -1.0, false), (f32::NAN, 0.0, false)]
+        {
+            let checked = SensorResolution { position_resolution, force_noise }.check();
+            assert_eq!(checked.is_ok(), sound, "{position_resolution} {force_noise}");
+        }
+    }
+
+    #[test]
+    fn a_width_of_exactly_the_share_is_no_doubt() {
+        // Nothing of nothing, where the share is zero too.
+        assert_eq!(assessed([0.0, 0.0], [0.0, 0.0]).flags, Flags::empty());
+        assert_eq!(assessed([0.0, 0.0], [1e-6, 0.0]).flags, Flags::STIFFNESS_UNCERTAIN);
+    }
+
+    #[test]
     fn an_interval_is_flagged_above_thirty_hundredths_of_its_own_value() {
         let (of_k, of_b) = (Flags::STIFFNESS_UNCERTAIN, Flags::DAMPING_UNCERTAIN);
         for (half_width, want) in [

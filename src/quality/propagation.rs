@@ -151,3 +151,183 @@ fn congruence(map: [Impedance; 2], m: Sym2) -> Sym2 {
     let (to_k, to_b) = (m.times(k), m.times(b));
     Sym2 { xx: dot(k, to_k), xv: dot(b, to_k), vv: dot(b, to_b) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Matrix = [[f64; 2]; 2];
+
+    fn pair(stiffness: f32, damping: f32) -> Impedance {
+        Impedance { stiffness, damping }
+    }
+
+    fn product(a: Matrix, b: Matrix) -> Matrix {
+        core::array::from_fn(|i| core::array::from_fn(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j]))
+    }
+
+    fn transposed(m: Matrix) -> Matrix {
+        [[m[0][0], m[1][0]], [m[0][1], m[1][1]]]
+    }
+
+    fn sum(a: Matrix, b: Matrix, factor: f64) -> Matrix {
+        core::array::from_fn(|i| core::array::from_fn(|j| a[i][j] + factor * b[i][j]))
+    }
+
+    fn outer(a: [f64; 2]) -> Matrix {
+        a.map(|row| a.map(|column| row * column))
+    }
+
+    fn full(m: Sym2) -> Matrix {
+        [[m.xx, m.xv], [m.xv, m.vv]].map(|row| row.map(f64::from))
+    }
+
+    fn rows(m: [Impedance; 2]) -> Matrix {
+        m.map(|row| [row.stiffness, row.damping].map(f64::from))
+    }
+
+    /// In the middle of a run, every number different and a short sum of powers of two, so that single precision is exact.
+    fn midway() -> UncertaintyPropagation {
+        UncertaintyPropagation {
+            start: pair(3.0, -1.5),
+            transition: [pair(0.5, 0.25), pair(-0.125, 0.75)],
+            noise: Sym2 { xx: 2.0, xv: -0.5, vv: 1.25 },
+            noise_gain: Sym2 { xx: 4.0, xv: 0.75, vv: 1.5 },
+            offset_gain: pair(-0.25, 2.0),
+            regressors: Sym2 { xx: 8.0, xv: -1.0, vv: 2.5 },
+            weight: 20.0,
+        }
+    }
+
+    /// `M <- A M`, `N <- A N A' + e g g'`, `o <- A o + g`, `R <- lambda R + phi phi'` in double precision and as matrices,
+    /// with `A = I - g phi'` and e the innovation times the residual.
+    #[test]
+    fn an_update_is_the_recursion_of_its_matrices() {
+        for (gain, square) in [([0.5, 0.75], 9.0 * 0.9375), ([3.0, -2.0], 9.0 * 1.0)] {
+            let (phi, innovation, forgetting) = ([0.5, -0.25], -3.0, 0.75);
+            let map = sum([[1.0, 0.0], [0.0, 1.0]], gain.map(|g| phi.map(|p| g * p)), -1.0);
+            let before = midway();
+            let mut after = before;
+            let row = Observation { penetration: 0.5, rate: -0.25, force: 0.0 };
+            after.advance(&row, pair(gain[0] as f32, gain[1] as f32), innovation, forgetting);
+            let propagated = |m: Sym2| product(product(map, full(m)), transposed(map));
+            assert_eq!(rows(after.transition), product(map, rows(before.transition)));
+            assert_eq!(full(after.noise), sum(propagated(before.noise), outer(gain), square));
+            assert_eq!(full(after.noise_gain), sum(propagated(before.noise_gain), outer(gain), 1.0));
+            let offset = [f64::from(before.offset_gain.stiffness), f64::from(before.offset_gain.damping)];
+            let moved: [f64; 2] = core::array::from_fn(|i| map[i][0] * offset[0] + map[i][1] * offset[1] + gain[i]);
+            assert_eq!([after.offset_gain.stiffness, after.offset_gain.damping].map(f64::from), moved);
+            assert_eq!(full(after.regressors), sum(outer(phi), full(before.regressors), 0.75));
+            assert_eq!((after.weight, after.start), (16.0, before.start));
+        }
+    }
+
+    #[test]
+    fn an_update_that_leaves_the_range_is_not_taken() {
+        let row = Observation { penetration: 0.5, rate: -0.25, force: 0.0 };
+        for (gain, innovation) in [
+            (pair(f32::INFINITY, 0.5), 1.0),
+            (pair(0.5, f32::NAN), 1.0),
+            (pair(0.5, 0.5), f32::INFINITY),
+            (pair(0.5, 0.5), f32::MAX),
+        ] {
+            let mut state = midway();
+            state.advance(&row, gain, innovation, 0.75);
+            assert_eq!(state, midway(), "{gain:?}, {innovation}");
+        }
+    }
+
+    /// The state all of whose numbers are zero but those at `places`, which are `value`.
+    fn with(places: &[usize], value: f32) -> UncertaintyPropagation {
+        let at = |place: usize| if places.contains(&place) { value } else { 0.0 };
+        let sym = |place: usize| Sym2 { xx: at(place), xv: at(place + 1), vv: at(place + 2) };
+        UncertaintyPropagation {
+            start: Impedance::ZERO,
+            transition: [pair(at(0), at(1)), pair(at(2), at(3))],
+            offset_gain: pair(at(4), at(5)),
+            noise: sym(6),
+            noise_gain: sym(9),
+            regressors: sym(12),
+            weight: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_state_is_finite_where_the_sum_of_its_numbers_is() {
+        let all: [usize; 15] = core::array::from_fn(|place| place);
+        assert!(with(&all, 1e30).is_finite());
+        for one in all {
+            assert!(with(&[one], 3e38).is_finite(), "{one}");
+            assert!(!with(&[one], f32::INFINITY).is_finite() && !with(&[one], f32::NAN).is_finite(), "{one}");
+            for other in all.into_iter().filter(|other| *other != one) {
+                assert!(!with(&[one, other], 3e38).is_finite(), "{one} and {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_confidence_is_widened_by_what_has_not_been_told_of_the_start() {
+        let state = UncertaintyPropagation { transition: [pair(0.5, 0.0), pair(0.0, 0.75)], ..midway() };
+        let found = state.confidence(pair(1.0, 2.5));
+        // Factors 1 / (1 - 0.5) and 1 / (1 - 0.75), for each side of the matrix.
+        assert_eq!(found.noise, Sym2 { xx: 8.0, xv: -4.0, vv: 20.0 });
+        assert_eq!(found.noise_gain, Sym2 { xx: 16.0, xv: 6.0, vv: 24.0 });
+        assert_eq!((found.offset_gain, found.samples), (state.offset_gain, 20.0));
+        // M (I - M)^-1 (start - estimate), of (2, -4).
+        assert_eq!(found.startup_bias, pair(2.0, -12.0));
+    }
+
+    /// `M (I - M)^-1 d` by Cramer's rule in double precision.
+    fn bias(m: Matrix, d: [f64; 2]) -> [f64; 2] {
+        let left = sum([[1.0, 0.0], [0.0, 1.0]], m, -1.0);
+        let determinant = left[0][0] * left[1][1] - left[0][1] * left[1][0];
+        let at_start = [
+            (left[1][1] * d[0] - left[0][1] * d[1]) / determinant,
+            (left[0][0] * d[1] - left[1][0] * d[0]) / determinant,
+        ];
+        core::array::from_fn(|i| m[i][0] * at_start[0] + m[i][1] * at_start[1])
+    }
+
+    #[test]
+    fn the_bias_of_the_start_follows_from_how_far_the_estimate_has_moved() {
+        let found = midway().startup_bias(pair(1.0, 2.5));
+        let expected = bias(rows(midway().transition), [2.0, -4.0]);
+        for (found, expected) in [(found.stiffness, expected[0]), (found.damping, expected[1])] {
+            assert!((f64::from(found) / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn where_the_parameters_are_not_told_apart_the_bias_is_not_known() {
+        let of = |transition| UncertaintyPropagation { transition, ..midway() }.startup_bias(pair(1.0, 2.5));
+        let unknown = pair(f32::INFINITY, f32::INFINITY);
+        assert_eq!(of([pair(1.0, 0.0), pair(0.0, 1.0)]), unknown, "nothing has been told");
+        // Of K alone: 0.5 / (1 - 0.5) of (3 - 1), and 0.75 / (1 - 0.75).
+        assert_eq!(of([pair(0.5, 0.0), pair(0.0, 1.0)]), pair(2.0, f32::INFINITY));
+        assert_eq!(of([pair(0.75, 0.0), pair(0.0, 1.0)]), pair(6.0, f32::INFINITY));
+        assert_eq!(of([pair(0.5, 0.25), pair(0.0, 1.0)]), unknown, "K rests on B");
+        assert_eq!(of([pair(0.5, 0.0), pair(0.25, 1.0)]), unknown, "B rests on K");
+        // The determinant of I - M as a share of its terms: 2^-17 is rounding, 2^-16 is not.
+        let nearly = |share: f32| of([pair(0.0, 1.0 - share), pair(1.0, 0.0)]);
+        assert_eq!(nearly(1.0 / 131_072.0), unknown);
+        assert!(nearly(1.0 / 65_536.0).is_finite());
+        let smaller_terms = |share: f32| of([pair(0.75, 0.25 * (1.0 - share)), pair(0.25, 0.75)]);
+        assert_eq!(smaller_terms(1.0 / 131_072.0), unknown);
+        assert!(smaller_terms(1.0 / 65_536.0).is_finite());
+        let larger_terms = |share: f32| of([pair(-7.0, 8.0 * (1.0 - share)), pair(8.0, -7.0)]);
+        assert_eq!(larger_terms(1.0 / 131_072.0), unknown);
+        assert!(larger_terms(1.0 / 65_536.0).is_finite());
+        // A determinant below zero is as good as one above.
+        assert!(of([pair(0.0, 2.0), pair(1.0, 0.0)]).is_finite());
+    }
+
+    #[test]
+    fn fill_and_excitation_are_those_of_the_weighted_samples() {
+        for (weight, fill) in [(0.0, 0.0), (2.0, 0.5), (4.0, 1.0), (5.0, 1.0)] {
+            let state = UncertaintyPropagation { weight, ..midway() };
+            let step = state.step(pair(1.0, 2.5), -0.5, 0.75, Flags::RESET);
+            assert_eq!((step.fill, step.innovation, step.flags), (fill, -0.5, Flags::RESET));
+            assert_eq!((step.estimate, step.excitation), (pair(1.0, 2.5), 1.0 - 1.0 / 20.0));
+        }
+    }
+}

@@ -128,4 +128,49 @@ mod tests {
         }
         assert!(!Covariance { d1: 1.0, d2: 1.0, u: f32::NAN }.is_sound());
     }
+
+    /// `P <- (P - P phi phi' P / s) / lambda` with `s = lambda + phi' P phi`, as matrices in double precision.
+    #[test]
+    fn an_observation_is_the_plain_form_of_the_recursion() {
+        let mut covariance = Covariance { d1: 2.0, d2: 0.5, u: -0.75 };
+        for (penetration, rate, forgetting) in [(0.5, -1.5, 0.75), (2.0, 0.25, 1.0), (-1.0, 3.0, 0.9)] {
+            let before = covariance.matrix();
+            let [xx, xv, vv] = [before.xx, before.xv, before.vv].map(f64::from);
+            let (x, v, lambda) = (f64::from(penetration), f64::from(rate), f64::from(forgetting));
+            let image = [xx * x + xv * v, xv * x + vv * v];
+            let s = lambda + image[0] * x + image[1] * v;
+            let gain = covariance.observe(&Observation { penetration, rate, force: 0.0 }, forgetting);
+            let after = covariance.matrix();
+            for (found, expected) in [
+                (gain.stiffness, image[0] / s),
+                (gain.damping, image[1] / s),
+                (after.xx, (xx - image[0] * image[0] / s) / lambda),
+                (after.xv, (xv - image[0] * image[1] / s) / lambda),
+                (after.vv, (vv - image[1] * image[1] / s) / lambda),
+            ] {
+                assert!((f64::from(found) - expected).abs() <= 1e-5 * expected.abs(), "{found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn inflation_adds_to_the_diagonal_and_to_nothing_else() {
+        let mut covariance = Covariance { d1: 2.0, d2: 0.5, u: -0.75 };
+        let before = covariance.matrix();
+        covariance.inflate(1.5);
+        let after = covariance.matrix();
+        for (found, expected) in [(after.xx, before.xx + 1.5), (after.xv, before.xv), (after.vv, before.vv + 1.5)] {
+            assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_covariance_is_plain_where_no_limit_can_be_reached() {
+        for (d1, d2, plain) in [(3.0, 5.0, true), (3.0, 5.5, false), (-1.0, 5.0, false), (1.0, -5.0, false)] {
+            assert_eq!(Covariance { d1, d2, u: 0.5 }.is_plain(8.0), plain, "{d1} {d2}");
+        }
+        assert!(!Covariance { d1: 0.0, d2: 5.0, u: 0.0 }.is_plain(8.0));
+        assert!(!Covariance { d1: 5.0, d2: 0.0, u: 0.0 }.is_plain(8.0));
+        assert_eq!(Covariance { d1: 3.0, d2: 5.0, u: 0.5 }.total(), 8.5);
+    }
 }

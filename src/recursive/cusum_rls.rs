@@ -157,4 +157,15 @@ mod tests {
         let most = Sym2::diagonal(4.0 * prior.stiffness, 4.0 * prior.damping);
         assert_eq!(state.recursion.covariance.matrix(), most);
     }
+
+    #[test]
+    fn before_anything_is_told_there_is_no_confidence() {
+        let law = CusumRls::new(CusumRlsConfig::default()).expect("sound settings");
+        let mut state = law.initial_state();
+        let step = law.update(&mut state, Recent::of(&[Observation::default()]));
+        assert_eq!(step.confidence, Confidence::NONE);
+        let row = Observation { penetration: 0.5, rate: 0.25, force: 1.0 };
+        let step = law.update(&mut state, Recent::of(&[row]));
+        assert!(step.confidence.noise.xx.is_finite(), "{step:?}");
+    }
 }

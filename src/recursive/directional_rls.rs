@@ -157,4 +157,13 @@ mod tests {
         assert_eq!(law().forgotten(unsound, ALONG_K), unsound);
         assert_eq!(law().forgotten(unsound, ALONG_B), unsound);
     }
+
+    #[test]
+    fn information_that_forgetting_would_make_zero_or_that_is_next_to_nothing_is_kept() {
+        let singular = Sym2 { xx: 1.0, xv: 2.0, vv: 1.0 };
+        assert_eq!(law().forgotten(singular, ALONG_K), singular);
+        assert_eq!(law().forgotten(singular, ALONG_B), singular);
+        let least = Sym2::diagonal(f32::MIN_POSITIVE, 8.0);
+        assert_eq!(law().forgotten(least, ALONG_K), least);
+    }
 }

@@ -175,4 +175,32 @@ mod tests {
         assert!(state.commit_plain(GAIN, 0.5, Covariance::diagonal(60.0, 40.0), 100.0));
         assert_eq!(state.covariance, Covariance::diagonal(60.0, 40.0));
     }
+
+    #[test]
+    fn an_estimate_is_finite_where_its_sum_is() {
+        let commit = |stiffness, damping| {
+            let mut state = RecursiveState::new(10.0, Impedance { stiffness, damping });
+            state.commit_plain(GAIN, 0.0, Covariance::diagonal(1.0, 2.0), 10.0)
+        };
+        assert!(commit(1e30, 1e30) && commit(3e38, -3e38) && commit(-1e30, 1e30));
+        assert!(!commit(3e38, 3e38) && !commit(-3e38, -3e38));
+    }
+
+    #[test]
+    fn covariances_are_checked_at_their_limits() {
+        for (initial, limit, accepted) in [
+            (10.0, 10.0, true),
+            (10.0, 9.9, false),
+            (1e8, 1e9, true),
+            (1e8, 1.1e9, false),
+            (1.1e8, 1e9, false),
+            (0.0, 1e9, false),
+            (f32::NAN, 1e9, false),
+            (10.0, f32::NAN, false),
+        ] {
+            assert_eq!(check_covariance(initial, limit).is_ok(), accepted, "{initial} {limit}");
+        }
+        assert!(check_initial_covariance(1e8).is_ok() && check_initial_covariance(1.1e8).is_err());
+        assert!(check_initial_covariance(-1.0).is_err());
+    }
 }
