@@ -96,4 +96,13 @@ mod tests {
         assert_ne!(sample(158, &SimulatorKind::ALL, 4), some);
         assert!(sample(10_000, &[SimulatorKind::Own], 3).iter().all(|entry| entry.source == SimulatorKind::Own));
     }
+
+    #[test]
+    fn the_nth_case_of_a_sample_stands_in_the_middle_of_its_share_of_the_list() {
+        let all = all_cases();
+        let mut taken: Vec<u64> = sample(7, &SimulatorKind::ALL, 3).iter().map(|entry| entry.index).collect();
+        taken.sort_unstable();
+        let expected: Vec<u64> = (0..7).map(|nth| (all.len() as u64 * (2 * nth + 1)) / 14).collect();
+        assert_eq!(taken, expected);
+    }
 }

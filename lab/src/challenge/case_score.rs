@@ -326,4 +326,37 @@ pub(super) mod tests {
         }
         assert_eq!(row.offered(), BTreeSet::from(["adhesion", "backlash", "cogging"]));
     }
+
+    /// A diagnosis that names `name` with a pull-off force.
+    fn valued(name: &str) -> DiagnosisJson {
+        let mut found = diagnosis(&[name], &[]);
+        let parameter = json!({"name": "pull_off_force", "value": 2.2, "unit": "N", "ci95": [1.0, 3.0]});
+        found.physics[0].parameters = vec![serde_json::from_value(parameter).unwrap()];
+        found
+    }
+
+    #[test]
+    fn values_are_scored_of_one_effect_that_is_named_rightly() {
+        let mut truth = answer("single", &["adhesion"], 2.0);
+        let parameter = json!({"name": "pull_off", "value": 2.0, "unit": "N"});
+        truth.effects[0].parameters = vec![serde_json::from_value(parameter).unwrap()];
+        let values = |truth: &DrawnAnswer, name| CaseScore::score(truth, Ok(&valued(name)), 1.0).values.len();
+        assert_eq!((values(&truth, "adhesion"), values(&truth, "hysteresis")), (1, 0));
+        let outside = DrawnAnswer { kind: CaseKind::Outside, ..truth };
+        assert_eq!((values(&outside, "adhesion"), values(&outside, UNKNOWN)), (0, 0));
+    }
+
+    #[test]
+    fn a_line_begins_with_what_came_of_it() {
+        let truth = answer("single", &["adhesion"], 2.0);
+        let line = |named: &[&str], alternatives: &[&str]| {
+            CaseScore::score(&truth, Ok(&diagnosis(named, alternatives)), 1.0).line()
+        };
+        assert!(line(&["adhesion"], &[]).starts_with("right  1/7/own"), "{}", line(&["adhesion"], &[]));
+        assert!(line(&["cogging"], &["adhesion"]).starts_with("within"));
+        assert!(line(&["cogging"], &[]).starts_with("WRONG"));
+        assert!(line(&[], &[]).starts_with("missed"));
+        let broke = CaseScore::score(&truth, Err("it stopped"), 1.0).line();
+        assert!(broke.starts_with("BROKE") && broke.ends_with(": it stopped"), "{broke}");
+    }
 }

@@ -316,7 +316,7 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::challenge::case_score::tests::diagnosis;
     use crate::challenge::commitment::CommittedCase;
@@ -354,7 +354,7 @@ mod tests {
     }
 
     /// The score of [`CASES`], the last of which did not come to an answer, and of two cases of another author.
-    fn score() -> ChallengeScore {
+    pub fn score() -> ChallengeScore {
         let mut lines: Vec<String> = CASES.iter().enumerate().map(|(index, case)| line(index, case)).collect();
         let other = |(case, truth): (&str, &[&str])| ExternalAnswer {
             set: "elsewhere".to_owned(),
@@ -475,5 +475,26 @@ mod tests {
         assert_eq!(median([3.0, 1.0, 2.0].into_iter()), 2.0);
         assert_eq!(median([4.0, 1.0, 2.0, 3.0].into_iter()), 2.5);
         assert_eq!((median(std::iter::empty()), share(0, 0), share(1, 4)), (0.0, 0.0, 0.25));
+    }
+
+    #[test]
+    fn a_real_recording_is_scored_against_an_answer_of_its_own_name() {
+        use crate::challenge::recordings::grade::Grade;
+        use crate::challenge::recordings::specimen_score::tests::row;
+        let line = |origin: &str, name: &str| {
+            let answer = json!({"recording": name, "set": "elsewhere", "case": "x", "truth": [], "also": []});
+            json!({"case": "x", "origin": origin, "files": {}, "answer": answer}).to_string()
+        };
+        let check = |lines: Vec<String>| {
+            let text = lines.iter().fold(String::new(), |text, line| text + line + "\n");
+            let answers = OpenedAnswers::check(lines, &hash(text.as_bytes())).unwrap();
+            let real = RecordingScores::of(vec![row(Grade::Named, &["gravity_load"], None)]);
+            ChallengeScore::of(3, &answers, Vec::new(), Vec::new(), Some(real), Vec::new()).unwrap().check()
+        };
+        check(vec![line("recorded", "arm/one")]).unwrap();
+        for lines in [vec![line("recorded", "arm/two")], vec![line("external", "arm/one")]] {
+            let error = check(lines).unwrap_err().to_string();
+            assert!(error.contains("arm/one: no answer was committed to"), "{error}");
+        }
     }
 }

@@ -130,3 +130,21 @@ fn commit(mut file: OutFile, bytes: &[u8]) -> Result<()> {
     file.write_all(bytes).map_err(|error| file.fault(&error))?;
     Ok(file.commit()?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_score_of_another_schema_is_refused_by_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("score.json");
+        let score = crate::challenge::challenge_score::tests::score();
+        let text = serde_json::to_string(&score).unwrap();
+        std::fs::write(&path, &text).unwrap();
+        assert_eq!(read(&path).unwrap().rows_sha256, score.rows_sha256);
+        std::fs::write(&path, text.replacen("palpate.challenge/1", "palpate.challenge/2", 1)).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("palpate.challenge/2"), "{error}");
+    }
+}

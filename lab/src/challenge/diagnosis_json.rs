@@ -96,3 +96,18 @@ impl FitJson {
         Some(rms? / floor)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_residual_is_held_against_an_expected_noise_above_zero() {
+        let over = |floor, rms| {
+            let fit = FitJson { unit: "N".to_owned(), noise_floor: floor, refitted: None, improved: None };
+            fit.over_floor(rms)
+        };
+        assert_eq!(over(Some(0.5), Some(2.0)), Some(4.0));
+        assert_eq!([over(Some(0.0), Some(2.0)), over(None, Some(2.0)), over(Some(0.5), None)], [None; 3]);
+    }
+}

@@ -356,13 +356,17 @@ mod tests {
         for case in ["000", "001"] {
             let case = folder.path().join(case);
             std::fs::create_dir(&case).unwrap();
-            for file in ["rig.toml", "trial-1.csv", "trial-2.csv", "notes.txt"] {
+            let others = ["notes.txt", "trial-notes.txt", "calibration.csv"];
+            for file in ["rig.toml", "trial-1.csv", "trial-2.csv"].into_iter().chain(others) {
                 std::fs::write(case.join(file), file).unwrap();
             }
         }
         let truth =
             r#"{"000": {"truth": []}, "001": {"truth": ["adhesion"], "also": [["hysteresis"]], "note": "hard"}}"#;
         std::fs::write(folder.path().join("truth.json"), truth).unwrap();
+        for file in ["truth.txt", "settings.json"] {
+            std::fs::write(folder.path().join(file), file).unwrap();
+        }
         folder
     }
 
@@ -401,5 +405,16 @@ mod tests {
                 .for_each(|name| std::fs::remove_file(folder.join("001").join(name)).unwrap());
         };
         refused(without_trials, "no trial");
+    }
+
+    #[test]
+    fn a_line_begins_with_what_came_of_it() {
+        let line = |named: &[&str], alternatives: &[&str]| row(&["adhesion"], &[], named, alternatives).line();
+        assert!(line(&["adhesion"], &[]).starts_with("right  000"), "{}", line(&["adhesion"], &[]));
+        assert!(line(&["cogging"], &["adhesion"]).starts_with("within"));
+        assert!(line(&["cogging"], &[]).starts_with("WRONG"));
+        assert!(line(&[], &[]).starts_with("missed"));
+        let broke = ExternalCaseScore::score(&answer(&[], &[]), Err("it stopped"), 1.0).line();
+        assert!(broke.starts_with("BROKE") && broke.ends_with(": it stopped"), "{broke}");
     }
 }

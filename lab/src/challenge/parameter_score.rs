@@ -147,4 +147,20 @@ mod tests {
         assert_eq!(count(&damping(1.3), "hunt_crossley_damping", "alpha", "u"), 0, "another power, another alpha");
         assert_eq!(count(&damping(1.3), "hunt_crossley_damping", "exponent", "1"), 1);
     }
+
+    #[test]
+    fn a_law_with_a_parameter_of_its_own_is_another_law() {
+        let count = |name: &str, theirs: &str, ours: &str, own: Option<(&str, f64)>| {
+            let parameters = [Some((theirs, 2.0)), own].into_iter().flatten().map(|(name, value)| (name, value, "u"));
+            let truth = concealed(name, &parameters.collect::<Vec<_>>());
+            compare(&truth, &found(name, ours, 2.0, "u", json!([1.0, 3.0]))).len()
+        };
+        let drag = |exponent| count("quadratic_damping", "coefficient", "quadratic", Some(("exponent", exponent)));
+        assert_eq!([drag(2.0), drag(1.5), drag(2.5)], [1, 0, 0]);
+        let branch = |own| count("stress_relaxation", "branch_stiffness", "branch_stiffness", own);
+        assert_eq!([branch(None), branch(Some(("second_time_constant", 3.0)))], [1, 0]);
+        let weight = |own| count("gravity_load", "load", "load", own);
+        assert_eq!([weight(None), weight(Some(("angle_zero", 3.0)))], [1, 0]);
+        assert_eq!(count("adhesion", "pull_off", "pull_off_force", Some(("angle_zero", 3.0))), 1);
+    }
 }

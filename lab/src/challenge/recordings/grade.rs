@@ -91,7 +91,6 @@ pub fn grade(set: &RecordingSet, diagnosis: &DiagnosisJson) -> Grade {
     let (named, wrong) = (named(diagnosis), wrong(set, diagnosis));
     let claims_friction = set.friction_is_open && named.iter().any(|name| DRY.contains(name));
     match wrong.as_slice() {
-        _ if named.is_empty() => Grade::Missed,
         [_, ..] if diagnosis.alternatives.iter().any(|rival| is_right(set, &rival.physics)) => Grade::Undecidable,
         [_, ..] => Grade::Wrong,
         [] if claims_friction && leaves_friction_open(diagnosis) => Grade::Undecidable,
@@ -144,5 +143,11 @@ mod tests {
         ] {
             assert_eq!(grade(set, &told(named, rivals, finding)), expected, "{named:?}");
         }
+    }
+
+    #[test]
+    fn every_grade_has_its_words() {
+        let all = [Grade::Named, Grade::Owned, Grade::Undecidable, Grade::Wrong, Grade::Missed];
+        assert_eq!(all.map(Grade::words), ["named", "owned", "undecidable and said so", "wrong", "missed"]);
     }
 }

@@ -228,3 +228,135 @@ impl RecordingScores {
         }
     }
 }
+
+#[cfg(test)]
+pub(in crate::challenge) mod tests {
+    use super::*;
+    use crate::challenge::case_score::tests::diagnosis;
+    use crate::challenge::recordings::known_physics::RECORDING_SETS;
+    use crate::rig::Rig;
+
+    /// A specimen of the set in `folder`, without trials.
+    pub fn specimen(folder: &str, name: &str) -> Specimen {
+        let text = "[rig]\nname = \"arm\"\n[drive]\nmass_kg = 1.0\nviscous_n_s_m = 2.0\n";
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        Specimen {
+            name: name.to_owned(),
+            set: RECORDING_SETS.iter().find(|set| set.folder == folder).unwrap(),
+            rig: Rig::read(file.path()).unwrap(),
+            rig_file: file.path().to_owned(),
+            training: Vec::new(),
+            held_out: Vec::new(),
+            no_split_reason: None,
+        }
+    }
+
+    #[test]
+    fn a_score_holds_the_answer_against_what_is_known() {
+        let arm = specimen("dfki_pendulum", "arm/one");
+        let found = SpecimenScore::score(&arm, Ok(&diagnosis(&["gravity_load", "cogging"], &["viscous_damping"])), 2.5);
+        assert_eq!((found.recording.as_str(), found.seconds, found.unit.as_str()), ("arm/one", 2.5, "N"));
+        assert_eq!(
+            (found.missing.as_slice(), found.wrong.as_slice()),
+            (&["coulomb_friction".to_owned()][..], &["cogging".to_owned()][..])
+        );
+        assert_eq!((found.grade, found.leaves_friction_open), (Grade::Wrong, false));
+        assert_eq!((found.noise_rms, found.cross_validated.before), (Some(0.5), Some(2.0)));
+        // Only where the recordings leave friction open can an answer leave it open.
+        let piston = specimen("pneumatic_seal_friction", "piston/one");
+        let open = |alternatives: &[&str]| {
+            SpecimenScore::score(&piston, Ok(&diagnosis(&["hysteresis"], alternatives)), 1.0).leaves_friction_open
+        };
+        assert!(open(&["viscous_damping"]) && !open(&["adhesion"]));
+        let broke = SpecimenScore::score(&arm, Err("it stopped"), 1.0);
+        assert_eq!(
+            (broke.grade, broke.failure.as_deref(), broke.missing.len()),
+            (Grade::Missed, Some("it stopped"), 2)
+        );
+    }
+
+    pub fn row(grade: Grade, named: &[&str], held_out: Option<[f64; 2]>) -> SpecimenScore {
+        let own = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        SpecimenScore {
+            recording: "arm/one".to_owned(),
+            description: String::new(),
+            known: own(&["gravity_load"]),
+            allowed: Vec::new(),
+            verdict: None,
+            named: own(named),
+            alternatives: Vec::new(),
+            missing: Vec::new(),
+            wrong: Vec::new(),
+            grade,
+            leaves_friction_open: false,
+            unit: "N".to_owned(),
+            noise_rms: Some(0.5),
+            cross_validated: ResidualPair::default(),
+            held_out: held_out.map(|[before, after]| ResidualPair { before: Some(before), after: Some(after) }),
+            training: Vec::new(),
+            scored: Vec::new(),
+            no_split_reason: None,
+            seconds: 1.0,
+            failure: None,
+        }
+    }
+
+    #[test]
+    fn the_unknown_is_owned_beside_a_name_only() {
+        assert!(row(Grade::Named, &["gravity_load", UNKNOWN], None).owns_rest());
+        assert!(!row(Grade::Named, &["gravity_load"], None).owns_rest());
+        assert!(!row(Grade::Owned, &[UNKNOWN], None).owns_rest());
+    }
+
+    #[test]
+    fn what_is_left_is_the_residual_with_the_physics_over_that_without() {
+        assert_eq!(row(Grade::Named, &["gravity_load"], Some([4.0, 1.0])).left(), Some(0.25));
+        assert_eq!(row(Grade::Named, &["gravity_load", UNKNOWN], Some([4.0, 1.0])).left(), Some(0.25));
+        assert_eq!(row(Grade::Owned, &[UNKNOWN], Some([4.0, 1.0])).left(), None, "nothing is named");
+        assert_eq!(row(Grade::Named, &["gravity_load"], Some([0.0, 1.0])).left(), None);
+        assert_eq!(row(Grade::Named, &["gravity_load"], None).left(), None);
+    }
+
+    #[test]
+    fn every_count_is_the_one_that_is_counted_by_hand() {
+        let score = RecordingScores::of(vec![
+            row(Grade::Named, &["gravity_load"], Some([4.0, 1.0])),
+            row(Grade::Named, &["gravity_load", UNKNOWN], Some([4.0, 4.0])),
+            row(Grade::Named, &["gravity_load"], Some([4.0, 6.0])),
+            row(Grade::Named, &["gravity_load"], Some([4.0, 2.0])),
+            row(Grade::Owned, &[UNKNOWN], Some([4.0, 1.0])),
+            row(Grade::Undecidable, &["hysteresis"], None),
+            row(Grade::Undecidable, &["hysteresis"], None),
+            row(Grade::Wrong, &["cogging"], None),
+            row(Grade::Missed, &[], None),
+        ]);
+        assert_eq!((score.n, score.named, score.rest_owned, score.owned), (9, 4, 1, 1));
+        assert_eq!((score.undecidable, score.wrong, score.missed), (2, 1, 1));
+        assert_eq!((score.held_back, score.better, score.left_median), (4, 2, 0.75));
+    }
+
+    #[test]
+    fn a_row_says_what_came_of_it() {
+        let of = |grade, named: &[&str]| row(grade, named, None);
+        assert_eq!(of(Grade::Named, &["gravity_load"]).words(), "named");
+        assert_eq!(of(Grade::Named, &["gravity_load", UNKNOWN]).words(), "named, and the rest owned");
+        let partly =
+            SpecimenScore { missing: vec!["coulomb_friction".to_owned()], ..of(Grade::Named, &["gravity_load"]) };
+        assert_eq!(partly.words(), "named; not coulomb friction");
+        let missed = SpecimenScore { missing: vec!["coulomb_friction".to_owned()], ..of(Grade::Missed, &[]) };
+        assert_eq!(missed.words(), "missed");
+        let open = |grade| SpecimenScore { leaves_friction_open: true, ..of(grade, &["hysteresis"]) };
+        let claims = "wrong: claims what kind of friction; damping not told from dry friction, and said so";
+        assert_eq!(open(Grade::Wrong).words(), claims);
+        assert_eq!(open(Grade::Undecidable).words(), "undecidable and said so");
+        let wrong = SpecimenScore { wrong: vec!["cogging".to_owned()], ..of(Grade::Wrong, &["cogging"]) };
+        assert_eq!(wrong.words(), "wrong: cogging");
+        assert_eq!(spaced(&[]), "nothing");
+        let line = row(Grade::Named, &["gravity_load"], Some([4.0, 1.0])).line();
+        assert!(
+            line.starts_with("arm/one [\"gravity_load\"] -> named; held out: 4.00e0 to 1.00e0 (5.00e-1) N, 1.0 s"),
+            "{line}"
+        );
+    }
+}

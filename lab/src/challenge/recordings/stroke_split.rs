@@ -82,4 +82,41 @@ mod tests {
         assert!(split_at_turn(&trial(|t| 1.0 - (t - 5.0).abs())).is_none(), "one press");
         assert!(split_at_turn(&trial(|t| (t - 9.0).abs())).is_none(), "turns near its end");
     }
+
+    #[test]
+    fn a_turn_is_where_the_tool_is_farthest_out_between_two_strokes() {
+        // Out is down: 4, in between at 9, and back by more than a tenth of the travel of ten.
+        assert_eq!(turns(&[0.0, 10.0, 4.0, 3.0, 5.0, 9.0, 2.0, 10.0]), [3, 6]);
+        // A tenth is no turn, either way; a little more is.
+        assert_eq!(turns(&[0.0, 10.0, 9.0, 10.0]), [0; 0]);
+        assert_eq!(turns(&[0.0, 10.0, 8.9, 9.9]), [0; 0]);
+        assert_eq!(turns(&[0.0, 10.0, 8.9, 10.0]), [2]);
+        // A travel of twenty: back by two is no turn.
+        assert_eq!(turns(&[0.0, 5.0, 3.0, 6.0, 10.0, -10.0]), [0; 0]);
+        // Of equal places the first, and a level that is not zero changes nothing.
+        assert_eq!(turns(&[100.0, 110.0, 103.0, 103.0, 108.0]), [2]);
+        assert_eq!(turns(&[100.0, 110.0, 110.0, 103.0, 108.0]), [3]);
+        // The way in is counted from where it begins.
+        assert_eq!(turns(&[0.0, 10.0, 5.0, 8.0, 7.5, 9.0, 6.0, 9.5]), [2, 6]);
+    }
+
+    #[test]
+    fn the_turn_nearest_the_middle_parts_the_trial_on_a_clock_that_does_not_begin_at_zero() {
+        // Turns at 3.5, 6 and 6.9 of 10 s, that begin at 100 s.
+        let out = [3.5, 6.0, 6.9];
+        let time: Vec<f64> = (0..=1000).map(|row| 100.0 + f64::from(row) * 0.01).collect();
+        let near = |t: f64| out.iter().map(|turn| (t - 100.0 - turn).abs()).fold(f64::INFINITY, f64::min);
+        let position = time.iter().map(|t| near(*t).min(0.4)).collect();
+        let [first, second] = split_at_turn(&Recording { time, position, ..Recording::default() }).unwrap();
+        assert_eq!((first.time.len(), second.time.len()), (601, 401));
+        assert!((first.time[600] - 6.0).abs() < 1e-9 && first.time[0] == 0.0 && second.time[0] == 0.0);
+    }
+
+    #[test]
+    fn a_turn_in_the_first_or_last_three_tenths_parts_nothing() {
+        for (turn, parted) in [(2.9, false), (3.1, true), (6.9, true), (7.1, false)] {
+            let found = split_at_turn(&trial(|t| (t - turn).abs().min(1.0)));
+            assert_eq!(found.is_some(), parted, "{turn} of 10 s");
+        }
+    }
 }
