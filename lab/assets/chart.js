@@ -163,10 +163,13 @@ const chart = (() => {
       series.push(edge, { ...edge });
       bands.push({ series: [series.length - 2, series.length - 1], fill: spec.corridor.fill });
     }
-    // The best is drawn last, over the others.
-    for (const line of [...spec.lines].sort((a, b) => Boolean(a.best) - Boolean(b.best))) {
+    // The best is drawn over the others, and what was measured over all.
+    const rank = (line) => (line.dots ? 2 : line.best ? 1 : 0);
+    for (const line of [...spec.lines].sort((a, b) => rank(a) - rank(b))) {
       data.push(line.values);
-      series.push({ stroke: line.stroke, width: line.best ? 2 : 1.4, dash: line.dash, points: { show: false } });
+      // What was measured is points: a line would claim what lies between them.
+      const look = line.dots ? { width: 0, points: { show: true, size: 3, width: 0, fill: line.stroke } } : { width: line.best ? 2 : 1.4, dash: line.dash, points: { show: false } };
+      series.push({ stroke: line.stroke, ...look });
     }
     const plot = new uPlot({
       width: shared.width, height: (spec.height ?? 218) + (spec.last ? 20 : 0), series, bands,

@@ -6,7 +6,7 @@
   const { element, legend } = words;
   const description = JSON.parse(document.getElementById("description").textContent);
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const LOOK = { measured: "--signal", given: "--given", refitted: "--refitted", improved: "--improved" };
+  const LOOK = { measured: "--signal", given: "--given", refitted: "--refitted", improved: "--improved", learned: "--learned" };
   const folds = [...document.querySelectorAll("details.trial")];
   const open = new Map();
 
@@ -25,11 +25,12 @@
 
   // ---- pictures
 
-  const line = (key, name, values) => ({ name, values, stroke: css(LOOK[key]), dash: key === "given" ? [6, 4] : [], best: key === "improved" });
+  const DASHES = { given: [6, 4], learned: [2, 3] };
+  const line = (key, name, values) => ({ name, values, stroke: css(LOOK[key]), dash: DASHES[key] ?? [], best: key === "improved" || key === "learned" });
 
   function model(trace, hidden) {
     const simulated = description.lines.filter(({ key }) => !hidden.has(key)).map(({ key, name }) => line(key, name, trace[key]));
-    return { short: trace.channel, unit: description.force, height: 250, lines: [line("measured", "measured", trace.measured), ...simulated] };
+    return { short: trace.channel, unit: description.force, height: 250, lines: [...simulated, { ...line("measured", "measured", trace.measured), dots: true }] };
   }
 
   function residual(trace, hidden) {
@@ -43,6 +44,7 @@
   }
 
   const depth = (trace) => ({ short: "depth", unit: description.position, height: 150, reference: 0, words: "surface", lines: [line("measured", "depth", trace.depth)], last: true });
+  const position = (trace) => ({ short: "position", unit: description.position, height: 150, lines: [line("measured", "position", trace.depth)], last: true });
 
   function copy(name) {
     return document.getElementById(name).content.cloneNode(true);
@@ -57,7 +59,8 @@
       view.at.append(part);
     };
     for (const trace of view.traces) add(`figures-${trace.channel}`, trace, [model, residual]);
-    add("figures-depth", view.traces[0], [depth]);
+    if (view.touches) add("figures-depth", view.traces.find(({ channel }) => channel === "force"), [depth]);
+    else add("figures-position", view.traces[0], [position]);
     return made;
   }
 
@@ -67,7 +70,7 @@
     view.charts = view.figures.map(({ figure, trace, spec }) => {
       const drawn = spec(trace, view.hidden);
       const tell = legend(figure.querySelector(".legend"), drawn);
-      const touches = view.places.filter(({ channel }) => channel === trace.channel || spec === depth).map(({ start, end }) => [start, end]);
+      const touches = view.places.filter(({ channel }) => channel === trace.channel || spec === depth || spec === position).map(({ start, end }) => [start, end]);
       const shared = { time: trace.time, since: "time since the first row, s", touches, width: width(figure), key: `trial-${view.index}` };
       const cursor = (row) => { tell(row); clock(view, row == null ? null : trace.time[row]); };
       return { ...chart.draw(drawn, shared, { ...hooks, cursor }, figure.querySelector(".plot")), trace, figure };
@@ -104,10 +107,10 @@
     show(view);
   }
 
-  // The largest place with as much again around it: what is off is seen beside what is not.
-  function worstSpan({ places, ends, traces }) {
-    if (places.length === 0) return null;
-    const { start, end } = places[0];
+  // What shows the answer, or the largest place, with as much again around it: what is off is seen beside what is not.
+  function worstSpan({ places, opens, ends, traces }) {
+    if (places.length === 0 && !opens) return null;
+    const [start, end] = opens ?? [places[0].start, places[0].end];
     const { time } = traces[0];
     const row = (ends[1] - ends[0]) / Math.max(1, time.length);
     const margin = Math.max(0.5 * (end - start), 10 * row);
@@ -140,7 +143,7 @@
       });
       return element("label", { className: "chip" }, box, element("span", { className: `key ${key}` }), name);
     }));
-    if (view.places.length === 0) bar.querySelector(".worst").remove();
+    if (!worstSpan(view)) bar.querySelector(".worst").remove();
     bar.querySelectorAll("[data-move]").forEach((button) => button.addEventListener("click", () => move(view, button.dataset.move)));
   }
 
@@ -154,8 +157,8 @@
 
   function begin(fold) {
     const index = Number(fold.dataset.trial);
-    const { traces, places } = description.trials[index];
-    const view = { index, places, traces: traces.map(load), at: fold.querySelector(".pictures"), charts: [], hidden: new Set() };
+    const { traces, places, opens, touches } = description.trials[index];
+    const view = { index, places, opens, touches, traces: traces.map(load), at: fold.querySelector(".pictures"), charts: [], hidden: new Set() };
     const times = view.traces.map(({ time }) => [time[0], time[time.length - 1]]);
     const [first, last] = [Math.min(...times.map(([t]) => t)), Math.max(...times.map(([, t]) => t))];
     view.ends = last > first ? [first, last] : [first - 0.5, first + 0.5];

@@ -36,7 +36,10 @@ const MAX_COLUMNS: usize = 110;
 pub fn run(args: &EffectsArgs) -> anyhow::Result<()> {
     let chosen = chosen(&args.names)?;
     match &args.json {
-        None => print(&text::page(&chosen, textwrap::termwidth().clamp(MIN_COLUMNS, MAX_COLUMNS))),
+        None => {
+            let index = if args.names.is_empty() { text::index(&chosen) } else { String::new() };
+            print(&(index + &text::page(&chosen, textwrap::termwidth().clamp(MIN_COLUMNS, MAX_COLUMNS))))
+        }
         Some(path) if path.as_os_str() == "-" => print(&machine::document(&chosen)?),
         Some(path) => {
             let mut file = OutFile::create(path)?;

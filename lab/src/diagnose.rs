@@ -168,7 +168,8 @@ fn is_told(contact: &contact::outcome::Outcome, name: &str) -> bool {
 fn together(rig: &Rig, contact: Option<&contact::outcome::Outcome>, drive: Option<&Outcome>) -> Option<(Report, Rig)> {
     let of_contact =
         contact.map(|outcome| (contact_report::contact_report(outcome, rig), contact_report::refined(rig, outcome)));
-    let of_drive = drive.map(|outcome| (drive_report::drive_report(outcome, rig), outcome));
+    let touched = contact.map(drive_report::Touched::of);
+    let of_drive = drive.map(|outcome| (drive_report::drive_report(outcome, rig, touched.as_ref()), outcome));
     match (of_contact, of_drive) {
         (None, None) => None,
         (Some((report, improved)), None) => Some((report, improved)),

@@ -57,8 +57,12 @@ fn two_effects_and_a_rival_are_told_with_figures() {
             "1.12 N (95 %: 0.81 to 1.21 N)",
             "chance alone does as much in fewer than 1 of 1000 cases",
             "the named physics takes away 97 %",
+            "Explained by hunt crossley damping and coulomb friction",
+            "of what the law without it leaves above the noise; chance",
+            "How this was made",
+            "SHA-256 abab",
             "82 % of what the simulation misses in the force lies at onset, as the contact begins, trial-1.csv, 2.61 to 2.95 s, x 0-2 mm, v &gt; 0.1 m/s.",
-            "quadratic damping and coulomb friction",
+            "quadratic damping not ruled out",
             "press at one speed to 3 mm and to 9 mm",
             "Before you rely on this",
             "318.4 ± 2.3 N/m",
@@ -93,10 +97,7 @@ fn nothing_missing_reads_well_and_shows_nothing_empty() {
 #[test]
 fn other_values_are_no_missing_physics() {
     let diagnosis = parameters();
-    says(
-        &diagnosis,
-        &["Other values, no other physics", "412.0 ± 2.3 N/m", "+37 %", "differ", "None of them was needed"],
-    );
+    says(&diagnosis, &["Other values, no other physics", "412.0 ± 2.3 N/m", "+37 %", "differ"]);
     assert!(!written(&diagnosis).contains("id=\"physics\""));
 }
 
@@ -109,7 +110,7 @@ fn what_is_unknown_is_owned_and_located() {
             "none of the 8 effects that were tried explains it",
             "Most of it, 74 % in the force, lies while drawing back, trial-1.csv, 3.20 to 3.70 s, x 3-9 mm",
             "no effect that was tried takes that away",
-            "record more of where it lies, while drawing back (x 3-9 mm, v &lt; -0.02 m/s)",
+            "record more of where it lies (while drawing back, x 3-9 mm, v &lt; -0.02 m/s)",
         ],
     );
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::baselines::BaselineScore;
 use super::diagnosis_json::DiagnosisJson;
 use super::recordings::specimen_score::ResidualPair;
+use super::recordings::specimen_score::spaced;
 
 /// One diagnosis that has ended.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -48,7 +49,7 @@ impl CaseResult {
     #[must_use]
     pub fn line(&self) -> String {
         match self.diagnosis() {
-            Ok(diagnosis) => format!("{}: {:?}, {:.1} s", self.case, diagnosis.names(), self.seconds),
+            Ok(diagnosis) => format!("{}: {}, {:.1} s", self.case, spaced(&diagnosis.names()), self.seconds),
             Err(failure) => format!("{}: no answer, {:.1} s: {failure}", self.case, self.seconds),
         }
     }

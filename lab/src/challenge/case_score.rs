@@ -12,6 +12,7 @@ use super::baselines::BaselineScore;
 use super::diagnosis_json::DiagnosisJson;
 use super::drawn_answer::DrawnAnswer;
 use super::parameter_score;
+use super::recordings::specimen_score::spaced;
 
 /// The name under which an answer owns that nothing of its list explains the rest.
 pub const UNKNOWN: &str = "unknown";
@@ -197,21 +198,32 @@ impl CaseScore {
             () => "missed",
         };
         format!(
-            "{mark:6} {}/{}/{} {:?} -> {:?} rivals {:?}, strength {:.2}, {:?} {:?}, after {:.2} of the floor, {:.1} s{}",
+            "{mark:6} {}/{}/{} {} -> {}; not told apart: {}; strength {:.2}, {} sensors, {} motion, left {}, {:.1} s{}",
             self.seed,
             self.index,
             self.source.name(),
-            self.truth,
-            self.named,
-            self.alternatives,
+            spaced(&self.truth),
+            spaced(&self.named),
+            listed(&self.alternatives),
             self.strength,
-            self.grade,
-            self.excitation,
-            self.after.unwrap_or(f64::NAN),
+            word(&self.grade),
+            word(&self.excitation),
+            self.after.map_or_else(|| "unknown".to_owned(), |after| format!("{after:.2} of the expected noise")),
             self.seconds,
             self.failure.as_ref().map(|why| format!(": {why}")).unwrap_or_default()
         )
     }
+}
+
+/// Each set by its names.
+fn listed(sets: &[Vec<String>]) -> String {
+    let each: Vec<String> = sets.iter().map(|set| spaced(set)).collect();
+    if each.is_empty() { "nothing".to_owned() } else { each.join(" or ") }
+}
+
+/// The word of a choice, as it stands in the JSON.
+fn word(choice: &impl Serialize) -> String {
+    serde_json::to_value(choice).ok().and_then(|word| Some(word.as_str()?.replace('_', " "))).unwrap_or_default()
 }
 
 #[cfg(test)]

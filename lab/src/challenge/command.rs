@@ -72,9 +72,14 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
         None => protocol::run(args)?,
     };
     let summary = summary::table(&challenge);
-    eprintln!("{summary}");
+    let mut told = summary.clone() + "\n";
     if let Some(recorded) = &challenge.recorded {
-        eprintln!("{}", table(recorded));
+        told += &(table(recorded) + "\n");
+    }
+    if args.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
+        eprint!("{told}");
+    } else {
+        std::io::stdout().write_all(told.as_bytes()).context("standard output")?;
     }
     let text = serde_json::to_string_pretty(&challenge).context("the score cannot be written as JSON")? + "\n";
     if let Some(mut file) = report {

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::case_score::UNKNOWN;
 use super::challenge_score::{NoEffectCounts, OutsideCounts, PairCounts};
 use super::diagnosis_json::DiagnosisJson;
+use super::recordings::specimen_score::spaced;
 use crate::error::InputError;
 
 /// The true answer of a case.
@@ -208,7 +209,8 @@ impl ExternalCaseScore {
             () => "missed",
         };
         let failure = self.failure.as_ref().map(|why| format!(": {why}")).unwrap_or_default();
-        format!("{mark:6} {} {:?} -> {:?}, {:.1} s{failure}", self.case, self.truth, self.named, self.seconds)
+        let (truth, named) = (spaced(&self.truth), spaced(&self.named));
+        format!("{mark:6} {} {truth} -> {named}, {:.1} s{failure}", self.case, self.seconds)
     }
 }
 

@@ -2,15 +2,18 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use sha2::{Digest as _, Sha256};
 
-use super::diagnose;
+use super::{Found, diagnose};
 use crate::diagnose::experiment::Experiment;
-use crate::diagnose::report::diagnosis::Diagnosis;
+use crate::diagnose::report::diagnosis::{Diagnosis, Run};
 use crate::diagnose::report::html;
+use crate::diagnose::report::model_file::model_file;
 use crate::error::{InputError, UsageError};
 use crate::investigate::session::separating_trial;
 use crate::outfile::OutFile;
@@ -66,7 +69,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     let open = |path: &Option<PathBuf>| {
         path.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()
     };
-    let (json, page, model) = (open(&args.json)?, open(&args.report)?, open(&args.model)?);
+    let (json, page, model_place) = (open(&args.json)?, open(&args.report)?, open(&args.model)?);
     let experiment = open(&args.experiment)?;
     let bar = progress();
     let say = |step: &str| bar.set_message(step.to_owned());
@@ -77,9 +80,10 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         let designed = separating_trial(&rig, &found, &trials);
         found.pictures.experiment = designed.or(found.pictures.experiment);
     }
+    found.pictures.run = Some(run_record(args)?);
     bar.finish_and_clear();
-    if let Some(file) = model {
-        commit(file, found.improved.to_toml().as_bytes())?;
+    if let Some(file) = model_place {
+        commit(file, model(args, &rig, &found)?.as_bytes())?;
     }
     if let Some(mut file) = page {
         html::write(&found.answer, &found.pictures, &mut file).map_err(|error| file.fault(&error))?;
@@ -104,6 +108,52 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The text of the improved rig file.
+fn model(args: &DiagnoseArgs, rig: &Rig, found: &Found) -> Result<String> {
+    let text = std::fs::read_to_string(&args.rig).with_context(|| format!("{}: cannot be read", args.rig.display()))?;
+    let trials: Vec<String> = args.trials.iter().map(|path| file_name(path)).collect();
+    let source = trials.join(", ");
+    model_file(&text, rig, &found.improved, &found.answer.nominal, &source)
+        .with_context(|| format!("{}: has changed and is no rig file any more", args.rig.display()))
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    // A comment ends with its line, and a terminal obeys control characters.
+    name.chars().map(|letter| if letter.is_control() { '?' } else { letter }).collect()
+}
+
+/// What it takes to make this diagnosis again.
+fn run_record(args: &DiagnoseArgs) -> Result<Run> {
+    let inputs = || std::iter::once(&args.rig).chain(&args.trials).chain(&args.simulation);
+    let hashed = |path: &PathBuf| -> Result<(String, String)> {
+        let bytes = std::fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+        let hash = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok((file_name(path), hash))
+    };
+    let mut words = vec!["palpate diagnose --rig".to_owned(), quoted(&args.rig)];
+    words.extend(args.trials.iter().map(|path| quoted(path)));
+    if !args.simulation.is_empty() {
+        words.push("--simulation".to_owned());
+        words.extend(args.simulation.iter().map(|path| quoted(path)));
+    }
+    words.push(format!("--seed {}", args.seed));
+    Ok(Run {
+        date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        version: env!("CARGO_PKG_VERSION"),
+        command: words.join(" "),
+        seed: args.seed,
+        inputs: inputs().map(hashed).collect::<Result<_>>()?,
+    })
+}
+
+/// A path as a shell takes it.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = text.chars().all(|letter| letter.is_alphanumeric() || "/._-+:,".contains(letter));
+    if is_plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
 /// Refuses a simulation that ends before its trial does, or lacks one of its channels: a residual against nothing is none.
@@ -173,6 +223,9 @@ fn told(answer: &Diagnosis) -> String {
         lines.extend(physics.parameters.iter().map(|value| {
             let [low, high] = value.ci95;
             let (number, unit) = (quantity::plain(value.value, &value.unit), &value.unit);
+            if low == high {
+                return format!("    {} = {number} (chosen, not fitted)", value.name);
+            }
             format!("    {} = {number} (95 %: {})", value.name, quantity::between(low, high, unit))
         }));
     }

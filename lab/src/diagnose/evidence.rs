@@ -9,6 +9,8 @@ pub struct NamedTerm {
     pub held_out_share: f64,
     /// Likelihood-ratio test of it, Bonferroni over all terms tried.
     pub p_value: f64,
+    /// What the law leaves without it, N or N m in root mean square on held-out rows.
+    pub without: f64,
 }
 
 /// A term tried alone.

@@ -270,15 +270,15 @@ fn line(row: &Row) -> String {
     let rounds: Vec<&str> = row.rounds.iter().map(mark).collect();
     let most = row.used.iter().fold(0.0, |most: f64, share| most.max(*share));
     format!(
-        "{:4} {:?} ({:.2}): first {}, designed {}, fixed {}; limits used to {most:.2}, {:.0} s; {:?}",
+        "{:4} {} ({:.2}): first {}, designed {}, fixed {}; limits used to {most:.2}, {:.0} s; {}",
         row.index,
-        row.truth,
+        row.truth.join(" and "),
         row.strength,
         mark(&row.first),
         rounds.join(" "),
         mark(&row.fixed),
         row.seconds,
-        row.last().named,
+        row.last().named.join(" and "),
     )
 }
 

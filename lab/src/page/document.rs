@@ -24,9 +24,22 @@ fn opening(page: &Page) -> Markup {
                 "The law is F = K x + B v. Stiffness K is the force that each bit of depth adds; damping B is the force that each bit of pressing speed adds."
             }
         }
+        @if page.trials.iter().any(|trial| trial.best().is_some()) { (limits(page)) }
         @if page.trials.len() > 1 {
             section aria-labelledby="all" { h2 #all { (page.trials.len()) " recordings" } (table::recordings(page)) }
             (settings(page))
+        }
+    }
+}
+
+/// What the intervals do not hold, and where the same recordings are asked for more than a spring and a damper.
+fn limits(page: &Page) -> Markup {
+    let names: Vec<&str> = page.trials.iter().take(2).map(|trial| trial.name.as_str()).collect();
+    html! {
+        p.law {
+            "Intervals are those that the drive computes: they hold where the contact is such a spring and damper and the noise is white, and ignore what other physics leaves. "
+            "Whether other physics acts: " code { "palpate diagnose --rig RIG.toml " (names.join(" ")) @if page.trials.len() > 2 { " ..." } }
+            ". Its K and B are those of one law for all recordings, with intervals widened by what the law leaves; here they are medians over the contact. Where it names physics, the two differ."
         }
     }
 }

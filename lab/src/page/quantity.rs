@@ -37,6 +37,9 @@ pub(crate) fn with_interval(value: f64, half_width: f64, unit: &str) -> String {
 /// The ends of a range, to two significant digits of its width.
 pub(crate) fn between(low: f64, high: f64, unit: &str) -> String {
     let width = high - low;
+    if width == 0.0 {
+        return plain(low, unit);
+    }
     if !width.is_finite() || width <= 0.0 {
         return format!("{} to {}", plain(low, unit), plain(high, unit));
     }
@@ -131,6 +134,7 @@ impl Scale {
         let exponent = magnitude(size * 1.000_05);
         match exponent {
             -15..12 if PREFIXED.contains(&base) => Self::prefixed(size, name),
+            -15..-3 if name == "s" => Self::prefixed(size, name),
             -3..5 => Self { factor: 1.0, words: spaced(&unit(name)), power: false },
             _ => {
                 let raised: String = exponent.to_string().chars().map(superscript).collect();
@@ -190,6 +194,8 @@ mod tests {
         assert_eq!(spaced(plain(0.8, "kg")), "0.8 kg");
         assert_eq!(spaced(plain(3.2e-9, "kg m^2")), "3.2 × 10⁻⁹ kg m²");
         assert_eq!(spaced(plain(1.5, "1")), "1.5");
+        assert_eq!(spaced(with_interval(2.6e-4, 4.3e-4, "s")), "260 ± 430 µs");
+        assert_eq!(spaced(between(0.2, 0.9, "s")), "0.20 to 0.90 s");
         assert_eq!(spaced(plain(12.34, "N s/m^2")), "12.34 N s/m²");
         assert_eq!(spaced(plain(2.5e13, "N/m^3")), "2.5 × 10¹³ N/m³");
         assert_eq!(spaced(with_interval(-3.21e-7, 4e-9, "1/s")), "(−3.210 ± 0.040) × 10⁻⁷ 1/s");
@@ -198,6 +204,7 @@ mod tests {
     #[test]
     fn a_range_has_the_digits_of_its_width() {
         assert_eq!(spaced(between(11.9, 12.71, "N s/m^2")), "11.90 to 12.71 N s/m²");
+        assert_eq!(spaced(between(2.0, 2.0, "N")), "2 N");
         assert_eq!(spaced(between(-1e-9, 3e-9, "N")), "−1.0 to 3.0 nN");
         assert_eq!(spaced(between(4.999_999_9e-5, 5.000_000_1e-5, "m/s")), "50 µm/s");
         assert_eq!(spaced(between(f64::NAN, 3e-9, "N")), "unknown to 3 nN");

@@ -110,7 +110,8 @@ pub fn differences(figures: &[Figures], path: &Path) -> Result<String> {
     }
     let gone = |b: &&Cost| !figures.iter().any(|f| f.name == b.update && f.window == b.window);
     for row in budget.iter().filter(gone) {
-        let _ = writeln!(words, "{} {:?} has a budget and was not measured", row.update, row.window);
+        let window = row.window.map_or_else(String::new, |window| format!(" of {window} samples"));
+        let _ = writeln!(words, "{}{window} has a budget and was not measured", row.update);
     }
     Ok(words)
 }

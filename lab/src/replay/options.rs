@@ -11,7 +11,7 @@ use crate::error::UsageError;
 #[derive(Debug, Clone, Args)]
 pub struct Options {
     /// Estimators, separated by commas
-    #[arg(long = "method", value_name = "NAME,...", value_delimiter = ',', default_value = "ewrls,sprls,bls,blmf", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).try_map(|name| method(&name)))]
+    #[arg(long = "method", value_name = "NAME,...", value_delimiter = ',', default_value = "cusum_rls,ewrls,sprls,bls,blmf", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).try_map(|name| method(&name)))]
     pub methods: Vec<Method>,
     /// Window of the block methods and reset interval of reset_rls, in samples
     #[arg(long, value_name = "N", default_value_t = Self::default().window, value_parser = clap::value_parser!(u16).range(2..=BANK_WINDOW as i64))]

@@ -21,7 +21,8 @@ pub fn explained() -> (Diagnosis, PlotData) {
         summary: "The damping grows with depth and the drive drags; the simulation knows neither.".into(),
         physics: vec![crossley(), coulomb()],
         alternatives: vec![Alternative {
-            physics: vec!["quadratic_damping".into(), "coulomb_friction".into()],
+            physics: vec!["quadratic_damping".into()],
+            channel: "force",
             held_out_gain: 0.93,
             separated_by: "press at one speed to 3 mm and to 9 mm: only damping that grows with depth tells them apart"
                 .into(),
@@ -60,12 +61,18 @@ pub fn explained() -> (Diagnosis, PlotData) {
         ..bare(Verdict::Explained)
     };
     let traces = ["trial-1.csv", "trial-2.csv"].iter().enumerate();
-    let traces =
+    let traces: Vec<Trace> =
         traces.flat_map(|(n, name)| ["force", "effort"].map(|c| trace(&BENCH, name, c, 2 * n as u64))).collect();
     let mut all = maps(&BENCH, "force", "m", 46.0, 1.1);
     all.extend(maps(&BENCH, "effort", "m", 1300.0, 1.4));
-    let pictures =
-        PlotData { traces, maps: all, scores: scores(), experiment: Some(experiment(9e-3)), ..blank("bench A") };
+    let pictures = PlotData {
+        evidence: vec![state_plot(&traces[0], "m"), state_plot(&traces[1], "m/s")],
+        traces,
+        run: Some(run()),
+        maps: all,
+        experiment: Some(experiment(9e-3)),
+        ..blank("bench A")
+    };
     (answer, pictures)
 }
 
@@ -99,17 +106,7 @@ pub fn parameters() -> (Diagnosis, PlotData) {
         locations: vec![location("force", "trial-1.csv", [0.0, 5.99], Phase::Loading, 0.7, "x 4-9 mm")],
         ..bare(Verdict::Parameters)
     };
-    let scores = scores().into_iter().map(|bar| EffectEvidence {
-        held_out_gain: 0.01 * bar.held_out_gain,
-        p_value: 0.6,
-        role: "",
-        ..bar
-    });
-    let pictures = PlotData {
-        traces: vec![trace(&size, "trial-1.csv", "force", 1)],
-        scores: scores.collect(),
-        ..blank("bench A")
-    };
+    let pictures = PlotData { traces: vec![trace(&size, "trial-1.csv", "force", 1)], ..blank("bench A") };
     (answer, pictures)
 }
 
@@ -117,7 +114,8 @@ pub fn unknown() -> (Diagnosis, PlotData) {
     let size = Size { lacks: [1.0, 0.9, 0.9], ..BENCH };
     let physics = Physics {
         name: "unknown".into(),
-        acts_in: "force",
+        acts_in: "contact",
+        channel: "force",
         statement: "The force differs while the tool draws back, and no known effect does so.".into(),
         equation: String::new(),
         evidence: Evidence { held_out_gain: 0.0, p_value: 0.002 },
@@ -139,16 +137,9 @@ pub fn unknown() -> (Diagnosis, PlotData) {
         channels: vec![goodness("force", [0.41, 0.305, 0.305, 0.044], 0.0)],
         ..bare(Verdict::Unknown)
     };
-    let scores = scores().into_iter().map(|bar| EffectEvidence {
-        held_out_gain: 0.1 * bar.held_out_gain,
-        p_value: 0.2,
-        role: "",
-        ..bar
-    });
     let pictures = PlotData {
         traces: vec![trace(&size, "trial-1.csv", "force", 1)],
         maps: maps(&size, "force", "m", 46.0, 46.0),
-        scores: scores.collect(),
         ..blank("bench A")
     };
     (answer, pictures)
@@ -181,7 +172,6 @@ pub fn nano() -> (Diagnosis, PlotData) {
         force_unit: "N m",
         traces: vec![trace(&size, "trial-1.csv", "force", 4)],
         maps: maps(&size, "force", "rad", 46.0, 3.0),
-        scores: scores(),
         ..blank("lever")
     };
     (answer, pictures)
@@ -210,7 +200,8 @@ fn blank(rig: &str) -> PlotData {
         force_unit: "N",
         traces: Vec::new(),
         maps: Vec::new(),
-        scores: Vec::new(),
+        evidence: Vec::new(),
+        run: None,
         experiment: None,
     }
 }
@@ -219,6 +210,7 @@ fn crossley() -> Physics {
     Physics {
         name: "hunt_crossley_damping".into(),
         acts_in: "contact",
+        channel: "force",
         statement: "The deeper the tool is, the more the contact damps".into(),
         equation: "F = K x + B v + alpha x v".into(),
         evidence: Evidence { held_out_gain: 0.94, p_value: 0.0002 },
@@ -232,6 +224,7 @@ fn coulomb() -> Physics {
     Physics {
         name: "coulomb_friction".into(),
         acts_in: "drive",
+        channel: "effort",
         statement: "The drive drags with the same force at every speed".into(),
         equation: "as symmetric, with forward_level for v > 0 and backward_level for v < 0".into(),
         evidence: Evidence { held_out_gain: 0.995, p_value: 0.004 },
@@ -264,16 +257,35 @@ fn location(
     Location { channel, trial: trial.into(), start_s, end_s, phase, share, states: states.into() }
 }
 
-fn scores() -> Vec<EffectEvidence> {
-    let gains = [0.94, 0.55, 0.91, 0.3, 0.04, 0.02, -0.01, -0.2];
-    let bars = CHECKED.iter().zip(gains).enumerate();
-    bars.map(|(n, (name, held_out_gain))| EffectEvidence {
-        name,
-        held_out_gain,
-        p_value: [0.0002, 0.004, 0.0004, 0.03, 0.4, 0.7, 0.9, 0.99][n],
-        role: ["answer", "answer", "rival", "", "", "", "", ""][n],
-    })
-    .collect()
+/// Force over depth of a trace, with what `learned` makes of it where there is one.
+fn state_plot(trace: &Trace, unit: &'static str) -> StatePlot {
+    let end = trace.time.last().copied().expect("rows");
+    StatePlot {
+        channel: trace.channel,
+        trial: trace.trial.clone(),
+        stretch_s: [0.25 * end, 0.4 * end],
+        drawn_s: [0.0, end],
+        along: if trace.channel == "force" { "depth" } else { "speed" },
+        unit,
+        ordinate: if trace.channel == "force" { "force" } else { "effort beside inertia" },
+        ordinate_unit: "N",
+        state: trace.depth.clone(),
+        measured: trace.measured.clone(),
+        as_given: trace.as_given.clone(),
+        refitted: trace.refitted.clone(),
+        improved: trace.improved.clone(),
+        learned: trace.learned.clone(),
+    }
+}
+
+fn run() -> Run {
+    Run {
+        date: "2026-01-02T03:04:05Z".into(),
+        version: "0.1.0",
+        command: "palpate diagnose --rig bench.toml trial-1.csv trial-2.csv --seed 1".into(),
+        seed: 1,
+        inputs: vec![("bench.toml".into(), "ab".repeat(32))],
+    }
 }
 
 fn experiment(depth: f64) -> Experiment {

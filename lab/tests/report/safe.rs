@@ -40,6 +40,9 @@ fn hostile_names_stay_text() {
     let tame = written(&explained());
     let (mut answer, mut pictures) = explained();
     pictures.rig = hostile.into();
+    pictures.evidence[0].trial = hostile.into();
+    let run = pictures.run.as_mut().expect("there is one");
+    (run.command, run.inputs[0].0) = (hostile.into(), hostile.into());
     answer.summary = hostile.into();
     answer.locations.iter_mut().for_each(|place| (place.trial, place.states) = (hostile.into(), hostile.into()));
     pictures
@@ -104,7 +107,7 @@ fn spoilt((mut answer, mut pictures): Report, bad: f64) -> Report {
     for map in &mut pictures.maps {
         [&mut map.before, &mut map.after, &mut map.share].into_iter().for_each(|values| values.fill(bad));
     }
-    pictures.scores.iter_mut().for_each(|bar| (bar.held_out_gain, bar.p_value) = (bad, bad));
+    pictures.evidence.iter_mut().for_each(|plot| (plot.state[3], plot.improved[4]) = (bad as f32, bad as f32));
     pictures.experiment.iter_mut().for_each(|next| next.reference[7] = bad);
     for trace in &mut pictures.traces {
         trace.improved.fill(bad as f32);
@@ -124,6 +127,8 @@ fn vectors_of_unequal_length_are_refused() {
         assert!(error.to_string().contains(named) && out.is_empty(), "{error}");
     };
     refused(|pictures| pictures.traces[1].expected_noise.truncate(9), "trial-1.csv");
+    refused(|pictures| pictures.evidence[0].state.truncate(9), "depth");
+    refused(|pictures| pictures.traces[1].learned.push(0.0), "trial-1.csv");
     refused(|pictures| pictures.maps[1].share.truncate(1), "depth");
     refused(|pictures| pictures.maps[2] = BinnedResidual { before: vec![1.0], ..pictures.maps[2].clone() }, "speed");
     refused(|pictures| pictures.experiment.iter_mut().for_each(|next| next.time.truncate(3)), "experiment");

@@ -29,6 +29,7 @@ pub fn trace(size: &Size, trial: &str, channel: &'static str, seed: u64) -> Trac
         as_given: Vec::new(),
         refitted: Vec::new(),
         improved: Vec::new(),
+        learned: Vec::new(),
         expected_noise: Vec::new(),
         valid: Vec::new(),
     };

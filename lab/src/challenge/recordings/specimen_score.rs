@@ -180,9 +180,9 @@ impl SpecimenScore {
     #[must_use]
     pub fn line(&self) -> String {
         format!(
-            "{} {:?} -> {}; held out: {}, {:.1} s{}",
+            "{} {} -> {}; held out: {}, {:.1} s{}",
             self.recording,
-            self.named,
+            spaced(&self.named),
             self.words(),
             self.held_out.map_or_else(|| "none".to_owned(), |unseen| unseen.text(self.noise_rms, &self.unit)),
             self.seconds,

@@ -24,6 +24,8 @@ pub struct Alternative {
     pub names: Vec<&'static str>,
     /// Share of the held-out mismatch that it takes.
     pub held_out_share: f64,
+    /// What it leaves, N or N m in root mean square on held-out rows.
+    pub left: f64,
     /// Its law.
     pub fit: Fit,
 }
@@ -171,11 +173,11 @@ fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, 
     loop {
         let held = folds.held_out(data, &fit);
         let first = search.nominal.model.terms.len();
-        let without: Vec<(Fit, f64)> = (first..fit.model.terms.len())
+        let without: Vec<(Fit, f64, f64)> = (first..fit.model.terms.len())
             .map(|at| {
                 let less = search.without(&fit, at);
-                let left = folds.held_out(data, &less).energy;
-                (less, left)
+                let left = folds.held_out(data, &less);
+                (less, left.energy, rms(data, &left.residual))
             })
             .collect();
         let share = |left: f64| {
@@ -188,10 +190,11 @@ fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, 
             continue;
         }
         let tried = 150.0;
-        let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
+        let named = without.iter().enumerate().map(|(nth, (less, left, without))| NamedTerm {
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
             p_value: (tried * likelihood_ratio_p(search.worth(&fit, less).gain, added_values(&fit, less))).min(1.0),
+            without: *without,
         });
         let named = named.collect();
         return (fit, held, named);
@@ -250,9 +253,15 @@ fn alternatives(
     };
     let open = chosen.sets.iter().filter(is_open).take(MOST_ALTERNATIVES);
     let told = open.map(|other| {
-        let taken = refitted.energy - folds.held_out(&search.data, other).energy;
+        let unseen = folds.held_out(&search.data, other);
+        let taken = refitted.energy - unseen.energy;
         let share = taken / (refitted.energy - expected).max(taken.abs()).max(f64::MIN_POSITIVE);
-        Alternative { names: other.model.names(first), held_out_share: share.clamp(0.0, 1.0), fit: other.clone() }
+        Alternative {
+            names: other.model.names(first),
+            held_out_share: share.clamp(0.0, 1.0),
+            left: rms(&search.data, &unseen.residual),
+            fit: other.clone(),
+        }
     });
     told.collect()
 }

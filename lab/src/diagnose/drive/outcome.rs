@@ -27,6 +27,8 @@ pub struct Alternative {
     pub names: Vec<&'static str>,
     /// Share of the held-out mismatch that it takes.
     pub held_out_share: f64,
+    /// What it leaves, N or N m in root mean square on held-out rows.
+    pub left: f64,
 }
 
 /// Everything found of a drive.
@@ -35,6 +37,8 @@ pub struct Outcome {
     pub trials: Vec<DriveTrial>,
     /// How it stands.
     pub verdict: Verdict,
+    /// The refitted nominal law.
+    pub nominal: Fit,
     /// The law with its terms.
     pub chosen: Fit,
     /// 95 % interval of each of its values.
@@ -111,6 +115,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         missing: [given, refitted.missing, improved.missing],
         expected_noise,
         band_hz: search.band_hz,
+        nominal: search.nominal.clone(),
         chosen: fit,
     }
 }
@@ -151,6 +156,7 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
             p_value: (tried * p_value(&fit, less)).min(1.0),
+            without: *left,
         });
         let named = named.collect();
         return (fit, held, named);
@@ -210,7 +216,7 @@ fn alternatives(
     open.map(|other| {
         let left = rms(&folds.held_out(&search.data, other, common).missing);
         let share = 1.0 - (left / before.max(f64::MIN_POSITIVE)).powi(2);
-        Alternative { names: other.model.names(), held_out_share: share.clamp(0.0, 1.0) }
+        Alternative { names: other.model.names(), held_out_share: share.clamp(0.0, 1.0), left }
     })
     .collect()
 }

@@ -1,6 +1,6 @@
 //! What the reports of contact and drive have in common.
 
-use super::diagnosis::{Alternative, EffectEvidence, FitQuality, Physics, Value};
+use super::diagnosis::{Alternative, Evidence, FitQuality, Physics, Value};
 use crate::diagnose::experiment;
 use crate::diagnose::term::Term;
 use crate::effects::{self, Effect};
@@ -22,6 +22,19 @@ impl Residuals {
         let [_, refitted, _] = self.of_laws;
         let above = refitted.powi(2) - self.expected_noise.powi(2);
         if above > 0.0 { ((refitted.powi(2) - left.powi(2)) / above).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// Share of the power above the expected noise that a law leaves without an effect, root mean square `without`, which the effect takes.
+    pub(super) fn share_of(&self, without: f64, left: f64) -> f64 {
+        let of_laws = [self.of_laws[0], without, left];
+        Self { of_laws, ..*self }.share_taken(left)
+    }
+
+    /// Evidence of a named effect, one of `named`: alone it takes what the answer takes.
+    pub(super) fn evidence(&self, named: usize, without: f64, p_value: f64) -> Evidence {
+        let [_, refitted, improved] = self.of_laws;
+        let without = if named == 1 { refitted } else { without };
+        Evidence { held_out_gain: self.share_of(without, improved), p_value }
     }
 
     /// As the page and the JSON show them.
@@ -66,8 +79,14 @@ pub(super) fn in_order(mut named: Vec<Physics>, rest: Option<Physics>) -> Vec<Ph
     named
 }
 
-/// A set of effects `names` that the recordings do not tell from `answer`; `otherwise` is the advice where the list knows none.
-pub(super) fn alternative(answer: &[&str], names: &[&str], held_out_gain: f64, otherwise: &str) -> Alternative {
+/// A set of effects `names` that the recordings of `channel` do not tell from `answer`; `otherwise` is the advice where the list knows none.
+pub(super) fn alternative(
+    channel: &'static str,
+    answer: &[&str],
+    names: &[&str],
+    held_out_gain: f64,
+    otherwise: &str,
+) -> Alternative {
     // What is new in the alternative comes first: it is what a reader has to weigh.
     let (shared, new): (Vec<&str>, Vec<&str>) = names.iter().partition(|name| answer.contains(name));
     let gone = answer.iter().find(|name| !names.contains(name));
@@ -76,26 +95,8 @@ pub(super) fn alternative(answer: &[&str], names: &[&str], held_out_gain: f64, o
         (Some(gone), Some(new)) => experiment::separated_by(&gone, &new),
         _ => otherwise.to_owned(),
     };
-    Alternative { physics: new.into_iter().chain(shared).map(str::to_owned).collect(), held_out_gain, separated_by }
-}
-
-/// Evidence of an effect tried alone, with what became of it.
-pub(super) fn evidence(
-    name: &'static str,
-    share: f64,
-    p_value: f64,
-    answer: &[&str],
-    alternatives: &[Alternative],
-) -> EffectEvidence {
-    let is_open = || alternatives.iter().any(|other| other.physics.iter().any(|other| other == name));
-    let role = if answer.contains(&name) {
-        "answer"
-    } else if is_open() {
-        "alternative"
-    } else {
-        ""
-    };
-    EffectEvidence { name, held_out_gain: share, p_value, role }
+    let physics = new.into_iter().chain(shared).map(str::to_owned).collect();
+    Alternative { physics, channel, held_out_gain, separated_by }
 }
 
 #[cfg(test)]

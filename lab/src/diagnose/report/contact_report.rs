@@ -1,8 +1,9 @@
 //! The diagnosis of the contact's channel, from what was identified of it.
 
 use super::channel::{self, Residuals};
+use super::contact_plot;
 use super::contact_residual::contact_residual;
-use super::diagnosis::{Diagnosis, Evidence, Finding, Location, Nominal, Physics, PlotData, Trace};
+use super::diagnosis::{Diagnosis, Evidence, Finding, Location, Nominal, Physics, PlotData};
 use super::summary;
 use crate::diagnose::contact::fit::Data;
 use crate::diagnose::contact::held_out::rms;
@@ -28,24 +29,23 @@ pub const CHANNEL: &str = "force";
 #[must_use]
 pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
-    let fit = residuals(outcome).quality(CHANNEL, coordinate.force_unit(), 0.5 / outcome.nominal.model.scales.step_s);
+    let residuals = residuals(outcome);
+    let fit = residuals.quality(CHANNEL, coordinate.force_unit(), 0.5 / outcome.nominal.model.scales.step_s);
     let residual = contact_residual(outcome, coordinate);
-    let locations = if outcome.verdict == Verdict::NoMismatch { Vec::new() } else { residual.locations() };
+    let is_good = outcome.verdict == Verdict::NoMismatch;
+    let locations = if is_good { Vec::new() } else { residual.locations() };
+    let shown = if is_good { None } else { residual.shortest_stretch() };
     let answer = outcome.chosen.model.names(outcome.known_terms);
     let alternatives: Vec<_> = outcome
         .alternatives
         .iter()
-        .map(|other| channel::alternative(&answer, &other.names, other.held_out_share, OTHERWISE))
-        .collect();
-    let singles = outcome.singles.iter();
-    let scores = singles
-        .map(|tried| channel::evidence(tried.name, tried.share, tried.p_value, &answer, &alternatives))
+        .map(|other| channel::alternative(CHANNEL, &answer, &other.names, residuals.share_taken(other.left), OTHERWISE))
         .collect();
     let mut diagnosis = Diagnosis {
         schema: "palpate.diagnosis/1",
         verdict: outcome.verdict,
         summary: String::new(),
-        physics: physics(outcome, coordinate, &locations),
+        physics: physics(outcome, &residuals, coordinate, &locations),
         alternatives,
         locations,
         channels: vec![fit.clone()],
@@ -64,10 +64,11 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         rig: rig.name.clone(),
         position_unit: coordinate.position_unit(),
         force_unit: coordinate.force_unit(),
-        traces: traces(outcome),
+        evidence: contact_plot::force_over_depth(outcome, shown, coordinate).into_iter().collect(),
+        traces: contact_plot::traces(outcome),
         maps: residual.maps(),
-        scores,
         experiment: None,
+        run: None,
     };
     (diagnosis, plots)
 }
@@ -137,14 +138,17 @@ fn with_law(
     rig
 }
 
-fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
-    let named: Vec<Physics> = outcome.named.iter().map(|named| described(outcome, named, coordinate)).collect();
+fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
+    let evidence = |named: &NamedTerm| residuals.evidence(outcome.named.len(), named.without, named.p_value);
+    let named: Vec<Physics> =
+        outcome.named.iter().map(|named| described(outcome, named, evidence(named), coordinate)).collect();
     let is_left = matches!(outcome.verdict, Verdict::PartlyExplained | Verdict::Unknown);
     let rest = is_left.then(|| {
         let mut rest = unknown(locations, !named.is_empty());
         if let Some(curve) = &outcome.learned {
-            rest.statement.push_str(&learned_words(curve, outcome, coordinate));
-            rest.evidence.held_out_gain = curve.held_out_share;
+            let [_, _, without] = residuals.of_laws;
+            rest.evidence.held_out_gain = residuals.share_of(without, rms(&data(outcome), &curve.residual));
+            rest.statement.push_str(&learned_words(curve, outcome, rest.evidence.held_out_gain, coordinate));
             LEARNED.spec().forms[0].equation.clone_into(&mut rest.equation);
         }
         rest
@@ -152,7 +156,7 @@ fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) ->
     channel::in_order(named, rest)
 }
 
-fn described(outcome: &Outcome, named: &NamedTerm, coordinate: Coordinate) -> Physics {
+fn described(outcome: &Outcome, named: &NamedTerm, evidence: Evidence, coordinate: Coordinate) -> Physics {
     let model = &outcome.chosen.model;
     let (term, start) = (model.terms[named.at], model.first_value_of(named.at));
     let spec = term.effect.spec();
@@ -160,9 +164,10 @@ fn described(outcome: &Outcome, named: &NamedTerm, coordinate: Coordinate) -> Ph
     Physics {
         name: spec.name.to_owned(),
         acts_in: spec.place.name(),
+        channel: CHANNEL,
         statement: format!("{}.", spec.statement),
         equation: spec.forms[term.form].equation.to_owned(),
-        evidence: Evidence { held_out_gain: named.held_out_share, p_value: named.p_value },
+        evidence,
         parameters: channel::parameters(term.effect, term.form, coordinate, values, intervals),
         on_drive: term.effect.on_drive().map(str::to_owned),
     }
@@ -171,12 +176,14 @@ fn described(outcome: &Outcome, named: &NamedTerm, coordinate: Coordinate) -> Ph
 fn unknown(locations: &[Location], beside: bool) -> Physics {
     let place = locations
         .first()
+        .filter(|place| place.share >= summary::MOST)
         .map(|place| format!(", most of it during {} ({})", phase::word(place.phase), place.states))
         .unwrap_or_default();
     let what = if beside { "Beside that, something" } else { "Something" };
     Physics {
         name: "unknown".to_owned(),
         acts_in: Place::Contact.name(),
+        channel: CHANNEL,
         statement: format!("{what} acts in the contact that none of the effects tried explains{place}."),
         equation: String::new(),
         evidence: Evidence { held_out_gain: 0.0, p_value: 0.0 },
@@ -186,11 +193,11 @@ fn unknown(locations: &[Location], beside: bool) -> Physics {
 }
 
 /// What a learned curve looks like: only what stands out of the noise.
-fn learned_words(curve: &LearnedCurve, outcome: &Outcome, coordinate: Coordinate) -> String {
+fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate: Coordinate) -> String {
     let (force, length) = (coordinate.force_unit(), coordinate.position_unit());
     let shape = learned::shape(&curve.paths);
     let notable = (3.0 * outcome.expected_noise).max(LEAST_FEATURE * shape.range);
-    let share = quantity::percent(100.0 * curve.held_out_share);
+    let share = quantity::percent(100.0 * share);
     let left = quantity::rounded(rms(&data(outcome), &curve.residual), force, 3);
     let mut text = format!(
         " A curve over depth and direction that is learned from the recordings takes {share} of it on rows that taught nothing and leaves {left}"
@@ -273,27 +280,4 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
         );
     }
     findings
-}
-
-fn traces(outcome: &Outcome) -> Vec<Trace> {
-    let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
-        let surface = outcome.chosen.model.surface(&outcome.chosen.values, at);
-        let by = |which: usize| -> Vec<f32> {
-            trial.force.iter().zip(&outcome.residuals[which][at]).map(|(force, rest)| (force - rest) as f32).collect()
-        };
-        let noise = |weight: &f64| if *weight > 0.0 { weight.recip() as f32 } else { outcome.expected_noise as f32 };
-        Trace {
-            trial: trial.name.clone(),
-            channel: CHANNEL,
-            time: trial.time.iter().map(|time| trial.origin_s + time).collect(),
-            depth: trial.position.iter().map(|position| (position - surface) as f32).collect(),
-            measured: trial.force.iter().map(|force| *force as f32).collect(),
-            as_given: by(0),
-            refitted: by(1),
-            improved: by(2),
-            expected_noise: outcome.weights[at].iter().map(noise).collect(),
-            valid: trial.counts.clone(),
-        }
-    });
-    each.collect()
 }

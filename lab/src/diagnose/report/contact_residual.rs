@@ -3,6 +3,7 @@
 use super::contact_report::CHANNEL;
 use super::residual_map::{ChannelResidual, ResidualRow};
 use crate::diagnose::contact::outcome::Outcome;
+use crate::diagnose::contact::trial::ContactTrial;
 use crate::diagnose::phase::Phase;
 use crate::diagnose::verdict::Verdict;
 use crate::rig::Coordinate;
@@ -33,6 +34,7 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
     let mut rows = Vec::new();
     for (number, trial) in outcome.trials.iter().enumerate() {
         let surface = model.surface(&outcome.chosen.values, number);
+        let pull = pull(trial, surface);
         for row in (0..trial.len()).filter(|row| outcome.weights[number][*row] > 0.0) {
             let (depth, velocity) = (trial.position[row] - surface, trial.velocity[row]);
             rows.push(ResidualRow {
@@ -40,14 +42,49 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
                 time_s: trial.time[row],
                 position: depth,
                 velocity,
-                phase: Phase::of(depth, velocity, scales.depth, scales.speed, model.bilateral),
+                phase: match Phase::of(depth, velocity, scales.depth, scales.speed, model.bilateral) {
+                    // What still pulls has not let go, and what already pushes or pulls has been touched.
+                    Phase::Free if pull(trial.force[row]) => {
+                        if velocity > 0.0 {
+                            Phase::Onset
+                        } else {
+                            Phase::Release
+                        }
+                    }
+                    phase => phase,
+                },
                 before: before[number][row].powi(2),
                 after: outcome.residuals[2][number][row].powi(2),
                 noise: outcome.weights[number][row].powi(-2),
+                gained: gained(outcome, before, number, row),
             });
         }
     }
     rows
+}
+
+/// Deviations of the sensor from its usual reading outside of the contact from which a force acts there.
+const PULLS: f64 = 8.0;
+
+/// Tells of a force reading outside of the contact whether something acts: against the usual reading there.
+fn pull(trial: &ContactTrial, surface: f64) -> impl Fn(f64) -> bool {
+    let outside = trial.force.iter().zip(&trial.position).filter(|(_, position)| **position < surface);
+    let mut readings: Vec<f64> = outside.map(|(force, _)| *force).collect();
+    readings.sort_by(f64::total_cmp);
+    let usual = readings.get(readings.len() / 2).copied().unwrap_or(0.0);
+    let limit = PULLS * trial.force_variance.sqrt();
+    move |force| (force - usual).abs() > limit
+}
+
+/// What the answer takes of a row: the learned element's law where there is one, else the named effects', and where nothing is named
+/// all that is above the noise.
+fn gained(outcome: &Outcome, before: &[Vec<f64>], trial: usize, row: usize) -> f64 {
+    let left = match (&outcome.learned, outcome.verdict) {
+        (Some(curve), _) => curve.residual[trial][row].powi(2),
+        (None, Verdict::Unknown) => outcome.weights[trial][row].powi(-2),
+        (None, _) => outcome.residuals[2][trial][row].powi(2),
+    };
+    before[trial][row].powi(2) - left
 }
 
 /// The mismatch that is located: of given values where nothing but them is wrong, else of refitted ones.

@@ -43,6 +43,8 @@ pub struct Physics {
     pub name: String,
     /// "contact", "drive" or "sensor"; the channel where unknown.
     pub acts_in: &'static str,
+    /// The channel that shows it: "force" or "effort".
+    pub channel: &'static str,
     /// One plain sentence.
     pub statement: String,
     /// Law in the symbols of the parameters; empty where unknown.
@@ -58,7 +60,7 @@ pub struct Physics {
 /// Why one should believe it.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct Evidence {
-    /// Share of the held-out residual's energy that it takes away: 1 - (rms after / rms before)^2, in its channel.
+    /// Of the power above the expected noise that the law leaves without it on rows that no fit saw, the share that it takes away.
     pub held_out_gain: f64,
     /// Probability that chance alone does as much somewhere among all effects: likelihood-ratio test, Bonferroni over all that are tried.
     pub p_value: f64,
@@ -73,7 +75,8 @@ pub struct Value {
     pub value: f64,
     /// "N s/m^2".
     pub unit: String,
-    /// 95 % interval.
+    /// 95 % interval; `null` in the JSON where the recordings set no end.
+    #[schemars(with = "[Option<f64>; 2]")]
     pub ci95: [f64; 2],
 }
 
@@ -82,7 +85,9 @@ pub struct Value {
 pub struct Alternative {
     /// Effects.
     pub physics: Vec<String>,
-    /// As in [`Evidence`].
+    /// The channel that they would explain: "force" or "effort".
+    pub channel: &'static str,
+    /// The measure of [`FitQuality::explained_share`]: of what refitted values leave above the expected noise, the share that it takes.
     pub held_out_gain: f64,
     /// The experiment that would tell them apart.
     pub separated_by: String,
@@ -101,8 +106,7 @@ pub struct Location {
     pub end_s: f64,
     /// Phase of contact.
     pub phase: Phase,
-    /// Share of its channel's energy above the expected noise that lies in this phase of this trial; start and end are the worst
-    /// stretch of it.
+    /// Share of its channel's energy above the expected noise that lies in this stretch.
     pub share: f64,
     /// "x 6-9 mm, v > 0.05 m/s".
     pub states: String,
@@ -142,7 +146,8 @@ pub struct Nominal {
     pub given: f64,
     /// Refitted, with the named physics.
     pub fitted: f64,
-    /// 95 % interval.
+    /// 95 % interval; `null` in the JSON where the recordings set no end.
+    #[schemars(with = "[Option<f64>; 2]")]
     pub ci95: [f64; 2],
 }
 
@@ -155,14 +160,65 @@ pub struct PlotData {
     pub position_unit: &'static str,
     /// "N" or "N m".
     pub force_unit: &'static str,
+    /// The measurement that shows the answer, one a channel, the channel of the answer first.
+    pub evidence: Vec<StatePlot>,
     /// A trial and channel each.
     pub traces: Vec<Trace>,
     /// Shares of the energy above the expected noise: by phase, depth, speed, time and frequency, before and after.
     pub maps: Vec<BinnedResidual>,
-    /// Evidence of every effect that was tried, the strongest first.
-    pub scores: Vec<EffectEvidence>,
     /// The reference to run next, where there are alternatives.
     pub experiment: Option<Experiment>,
+    /// How the diagnosis was made; `None` where no command was given.
+    pub run: Option<Run>,
+}
+
+/// Force over a state of the machine: depth of a contact, speed or position of a drive. All vectors are of equal length, but for
+/// `learned`, which is empty where nothing was learned.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct StatePlot {
+    /// "force" or "effort".
+    pub channel: &'static str,
+    /// File name of the trial.
+    pub trial: String,
+    /// The shortest stretch that holds most of what the answer gains, seconds since the first row of the trial.
+    pub stretch_s: [f64; 2],
+    /// The stretch that is drawn: of a contact the whole pass around `stretch_s`.
+    pub drawn_s: [f64; 2],
+    /// "depth", "speed" or "position".
+    pub along: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What is drawn over it: "force", or what of the effort is left to friction and load.
+    pub ordinate: &'static str,
+    /// "N" or "N m".
+    pub ordinate_unit: &'static str,
+    /// The state, row by row.
+    pub state: Vec<f32>,
+    /// As measured.
+    pub measured: Vec<f32>,
+    /// By the rig file as given, by refitted values, with the named effects, and with the learned element.
+    pub as_given: Vec<f32>,
+    /// See `as_given`.
+    pub refitted: Vec<f32>,
+    /// See `as_given`.
+    pub improved: Vec<f32>,
+    /// See `as_given`.
+    pub learned: Vec<f32>,
+}
+
+/// How a diagnosis was made.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Run {
+    /// UTC, as in RFC 3339.
+    pub date: String,
+    /// Of this tool.
+    pub version: &'static str,
+    /// The command line.
+    pub command: String,
+    /// Seed of what was drawn at random.
+    pub seed: u64,
+    /// Every input file with its SHA-256.
+    pub inputs: Vec<(String, String)>,
 }
 
 /// One channel of one trial over time. All vectors are of equal length.
@@ -184,6 +240,8 @@ pub struct Trace {
     pub refitted: Vec<f32>,
     /// With the named physics.
     pub improved: Vec<f32>,
+    /// With the learned element; empty where nothing was learned.
+    pub learned: Vec<f32>,
     /// Deviation of what the sensors leave at each moment.
     pub expected_noise: Vec<f32>,
     /// Whether a row was seen whole; others are drawn as a gap.
@@ -207,17 +265,4 @@ pub struct BinnedResidual {
     pub after: Vec<f64>,
     /// Share of the channel's energy above the expected noise that lies in the bin, before.
     pub share: Vec<f64>,
-}
-
-/// Evidence of one effect.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct EffectEvidence {
-    /// Name.
-    pub name: &'static str,
-    /// Share of the held-out residual energy above the expected noise that it takes alone; below zero where it makes things worse.
-    pub held_out_gain: f64,
-    /// Probability of as much by chance, for it alone.
-    pub p_value: f64,
-    /// "answer", "alternative" or "".
-    pub role: &'static str,
 }

@@ -1,12 +1,12 @@
 //! The diagnosis of the drive's channel, from what was identified of it.
 
 use super::channel::{self, Residuals};
-use super::diagnosis::{Diagnosis, Evidence, Location, Nominal, Phase, Physics, PlotData, Trace};
+use super::diagnosis::{Diagnosis, Evidence, Location, Nominal, Phase, Physics, PlotData};
+use super::drive_plot;
 use super::drive_residual::drive_residual;
 use super::summary;
+use crate::diagnose::contact;
 use crate::diagnose::drive::held_out::rms;
-use crate::diagnose::drive::input::Inputs;
-use crate::diagnose::drive::law::DriveLaw;
 use crate::diagnose::drive::model::index;
 use crate::diagnose::drive::named::{NamedEffect, named};
 use crate::diagnose::drive::outcome::Outcome;
@@ -18,33 +18,57 @@ use crate::rig::{Coordinate, Drive, Rig};
 /// The channel's name in the JSON.
 pub const CHANNEL: &str = "effort";
 
-/// Diagnosis and plots of the drive alone.
+/// Where the tool of a drive touches, as the contact's channel found it.
+pub struct Touched {
+    /// Fitted surface of each trial.
+    surfaces: Vec<f64>,
+    /// Greatest depth and usual speed in contact.
+    depth: f64,
+    speed: f64,
+    bilateral: bool,
+}
+
+impl Touched {
+    /// By what was found of the contact.
+    #[must_use]
+    pub fn of(contact: &contact::outcome::Outcome) -> Self {
+        let (model, values) = (&contact.chosen.model, &contact.chosen.values);
+        Self {
+            surfaces: (0..contact.trials.len()).map(|trial| model.surface(values, trial)).collect(),
+            depth: model.scales.depth,
+            speed: model.scales.speed,
+            bilateral: model.bilateral,
+        }
+    }
+
+    /// The phase of contact of a row of a trial.
+    pub(super) fn phase(&self, trial: usize, position: f64, velocity: f64) -> Phase {
+        let surface = self.surfaces.get(trial).copied().unwrap_or(f64::INFINITY);
+        Phase::of(position - surface, velocity, self.depth, self.speed, self.bilateral)
+    }
+}
+
+/// Diagnosis and plots of the drive alone; `touched` where a contact was recorded as well.
 #[must_use]
-pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
+pub fn drive_report(outcome: &Outcome, rig: &Rig, touched: Option<&Touched>) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
     let residuals = residuals(outcome);
     let fit = residuals.quality(CHANNEL, coordinate.force_unit(), outcome.band_hz);
-    let residual = drive_residual(outcome, coordinate);
-    let locations = if outcome.verdict == Verdict::NoMismatch { Vec::new() } else { residual.locations() };
+    let residual = drive_residual(outcome, coordinate, touched);
+    let is_good = outcome.verdict == Verdict::NoMismatch;
+    let locations = if is_good { Vec::new() } else { residual.locations() };
+    let shown = if is_good { None } else { residual.shortest_stretch() };
     let answer = outcome.chosen.model.names();
     let alternatives: Vec<_> = outcome
         .alternatives
         .iter()
-        .map(|other| {
-            // The outcome's share is of all that refitted values leave, noise and all.
-            let left = fit.refitted * (1.0 - other.held_out_share).sqrt();
-            channel::alternative(&answer, &other.names, residuals.share_taken(left), OTHERWISE)
-        })
-        .collect();
-    let singles = outcome.singles.iter();
-    let scores = singles
-        .map(|tried| channel::evidence(tried.name, tried.share, tried.p_value, &answer, &alternatives))
+        .map(|other| channel::alternative(CHANNEL, &answer, &other.names, residuals.share_taken(other.left), OTHERWISE))
         .collect();
     let mut diagnosis = Diagnosis {
         schema: "palpate.diagnosis/1",
         verdict: outcome.verdict,
         summary: String::new(),
-        physics: physics(outcome, coordinate, &locations),
+        physics: physics(outcome, &residuals, coordinate, &locations),
         alternatives,
         locations,
         channels: vec![fit.clone()],
@@ -59,14 +83,16 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         findings: Vec::new(),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
+    let first_effect = diagnosis.physics.first().map(|physics| physics.name.as_str());
     let plots = PlotData {
         rig: rig.name.clone(),
         position_unit: coordinate.position_unit(),
         force_unit: coordinate.force_unit(),
-        traces: traces(outcome),
+        evidence: drive_plot::friction(outcome, first_effect, shown, coordinate).into_iter().collect(),
+        traces: drive_plot::traces(outcome),
         maps: residual.maps(),
-        scores,
         experiment: None,
+        run: None,
     };
     (diagnosis, plots)
 }
@@ -113,13 +139,14 @@ pub fn refined(given: &Rig, base: &Rig, outcome: &Outcome) -> Rig {
     rig
 }
 
-fn physics(outcome: &Outcome, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
+fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, locations: &[Location]) -> Vec<Physics> {
     let named: Vec<Physics> = outcome
         .named
         .iter()
         .filter_map(|term| {
             let effect = named(&outcome.chosen, &outcome.intervals, term.at)?;
-            Some(described(&effect, coordinate, Evidence { held_out_gain: term.held_out_share, p_value: term.p_value }))
+            let evidence = residuals.evidence(outcome.named.len(), term.without, term.p_value);
+            Some(described(&effect, coordinate, evidence))
         })
         .collect();
     let is_left = matches!(outcome.verdict, Verdict::PartlyExplained | Verdict::Unknown);
@@ -133,6 +160,7 @@ fn described(named: &NamedEffect, coordinate: Coordinate, evidence: Evidence) ->
     Physics {
         name: spec.name.to_owned(),
         acts_in: spec.place.name(),
+        channel: CHANNEL,
         statement: format!("{}.", spec.statement),
         equation: form.equation.to_owned(),
         evidence,
@@ -142,11 +170,16 @@ fn described(named: &NamedEffect, coordinate: Coordinate, evidence: Evidence) ->
 }
 
 fn unknown(locations: &[Location], beside: bool) -> Physics {
-    let place = locations.first().map(|place| format!(", most of it at {}", place.states)).unwrap_or_default();
+    let place = locations
+        .first()
+        .filter(|place| place.share >= summary::MOST)
+        .map(|place| format!(", most of it at {}", place.states))
+        .unwrap_or_default();
     let what = if beside { "Beside that, a force" } else { "A force" };
     Physics {
         name: "unknown".to_owned(),
         acts_in: Place::Drive.name(),
+        channel: CHANNEL,
         statement: format!("{what} acts on the drive that none of the effects tried explains{place}."),
         equation: String::new(),
         evidence: Evidence { held_out_gain: 0.0, p_value: 0.0 },
@@ -173,29 +206,3 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         row("effort_delay", "s", 0.0, index::DELAY),
     ]
 }
-
-fn traces(outcome: &Outcome) -> Vec<Trace> {
-    let law = DriveLaw::nominal(1.0, 0.0, outcome.chosen.values[index::DELAY]);
-    let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
-        let effort = Inputs::of(trial, &law).effort;
-        let by = |which: usize| -> Vec<f32> {
-            effort.iter().zip(&outcome.missing[which][at]).map(|(effort, missing)| (effort - missing) as f32).collect()
-        };
-        Trace {
-            trial: trial.name.clone(),
-            channel: CHANNEL,
-            time: trial.time.clone(),
-            depth: trial.position.iter().map(|position| *position as f32).collect(),
-            as_given: by(0),
-            refitted: by(1),
-            improved: by(2),
-            measured: effort.iter().map(|effort| *effort as f32).collect(),
-            expected_noise: vec![outcome.expected_noise as f32; trial.len()],
-            valid: trial.restart.iter().map(|restart| !restart).collect(),
-        }
-    });
-    each.collect()
-}
-
-/// The phase of a row of a drive, which knows only free motion.
-pub const PHASE: Phase = Phase::Free;

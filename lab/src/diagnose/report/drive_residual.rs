@@ -1,9 +1,10 @@
 //! The residual of the drive's channel, row by row.
 
-use super::drive_report::{CHANNEL, PHASE};
+use super::drive_report::{CHANNEL, Touched};
 use super::residual_map::{ChannelResidual, ResidualRow};
 use crate::diagnose::drive::outcome::Outcome;
 use crate::diagnose::drive::trial::DriveTrial;
+use crate::diagnose::phase::Phase;
 use crate::diagnose::verdict::Verdict;
 use crate::rig::Coordinate;
 
@@ -11,7 +12,11 @@ use crate::rig::Coordinate;
 const STRETCH_S: f64 = 1.0;
 
 /// The rows of `outcome`.
-pub(super) fn drive_residual(outcome: &Outcome, coordinate: Coordinate) -> ChannelResidual<'_> {
+pub(super) fn drive_residual<'a>(
+    outcome: &'a Outcome,
+    coordinate: Coordinate,
+    touched: Option<&Touched>,
+) -> ChannelResidual<'a> {
     let step_s = outcome.trials.first().map_or(1.0, |trial| trial.period_s);
     let highest_hz = outcome.band_hz.min(0.45 / step_s);
     ChannelResidual {
@@ -19,7 +24,7 @@ pub(super) fn drive_residual(outcome: &Outcome, coordinate: Coordinate) -> Chann
         coordinate,
         position_name: "position",
         trials: outcome.trials.iter().map(|trial| trial.name.as_str()).collect(),
-        rows: rows(outcome),
+        rows: rows(outcome, touched),
         columns: [before(outcome), &outcome.missing[2]],
         step_s,
         highest_hz,
@@ -30,21 +35,25 @@ pub(super) fn drive_residual(outcome: &Outcome, coordinate: Coordinate) -> Chann
     }
 }
 
-fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
+fn rows(outcome: &Outcome, touched: Option<&Touched>) -> Vec<ResidualRow> {
     let noise = outcome.expected_noise.powi(2);
     let before = before(outcome);
     let mut rows = Vec::new();
     for (number, trial) in outcome.trials.iter().enumerate() {
         for row in 0..trial.len() {
+            let (first, last) = (before[number][row].powi(2), outcome.missing[2][number][row].powi(2));
+            let left = if outcome.verdict == Verdict::Unknown { noise } else { last };
+            let (position, velocity) = (trial.position[row], velocity(trial, row));
             rows.push(ResidualRow {
                 trial: number,
                 time_s: trial.time[row] - trial.time[0],
-                position: trial.position[row],
-                velocity: velocity(trial, row),
-                phase: PHASE,
-                before: before[number][row].powi(2),
-                after: outcome.missing[2][number][row].powi(2),
+                position,
+                velocity,
+                phase: touched.map_or(Phase::Free, |touched| touched.phase(number, position, velocity)),
+                before: first,
+                after: last,
                 noise,
+                gained: first - left,
             });
         }
     }

@@ -11,10 +11,12 @@ mod fit_quality;
 mod header;
 mod locations;
 mod nominal;
+mod run;
+mod state_plot;
 mod trial;
 mod wording;
 
-use super::diagnosis::{Diagnosis, PlotData, Trace, Verdict};
+use super::diagnosis::{Diagnosis, PlotData, StatePlot, Trace, Verdict};
 use crate::page::shell;
 use maud::html;
 use std::io::{self, Write};
@@ -34,12 +36,13 @@ pub fn write(answer: &Diagnosis, pictures: &PlotData, out: &mut impl Write) -> i
     shell::open(&format!("{} – palpate diagnose", pictures.rig), STYLE, out)?;
     let body = html! {
         (header::header(answer, pictures))
-        (fit_quality::section(answer))
-        (locations::section(answer, pictures))
-        (trial::section(&trials, answer))
         (evidence::section(answer, pictures))
-        (nominal::section(answer))
+        (fit_quality::section(answer))
+        (trial::section(&trials, answer))
+        (locations::section(answer, pictures))
+        (nominal::section(answer, pictures))
         (finding::section(answer, pictures))
+        (run::section(pictures.run.as_ref()))
     };
     out.write_all(body.0.as_bytes())?;
     data::write(answer, pictures, &trials, out)?;
@@ -54,12 +57,13 @@ fn names_physics(answer: &Diagnosis) -> bool {
 
 fn check(pictures: &PlotData) -> io::Result<()> {
     let torn_trace = pictures.traces.iter().find(|trace| !is_whole(trace)).map(|trace| trace.trial.as_str());
+    let torn_plot = pictures.evidence.iter().find(|plot| !is_whole_plot(plot)).map(|plot| plot.along);
     let torn_map = pictures.maps.iter().find(|map| {
         let bins = map.labels.len();
         [map.before.len(), map.after.len(), map.share.len()].iter().any(|len| *len != bins)
     });
     let torn_experiment = pictures.experiment.as_ref().filter(|next| next.time.len() != next.reference.len());
-    let torn = torn_trace.or(torn_map.map(|map| map.along)).or(torn_experiment.map(|_| "the experiment"));
+    let torn = torn_trace.or(torn_plot).or(torn_map.map(|map| map.along)).or(torn_experiment.map(|_| "the experiment"));
     match torn {
         None => Ok(()),
         Some(what) => {
@@ -73,5 +77,12 @@ fn is_whole(trace: &Trace) -> bool {
     let columns =
         [&trace.depth, &trace.measured, &trace.as_given, &trace.refitted, &trace.improved, &trace.expected_noise];
     let rows = trace.time.len();
-    trace.valid.len() == rows && columns.iter().all(|column| column.len() == rows)
+    let learned = [0, rows].contains(&trace.learned.len());
+    trace.valid.len() == rows && learned && columns.iter().all(|column| column.len() == rows)
+}
+
+fn is_whole_plot(plot: &StatePlot) -> bool {
+    let rows = plot.state.len();
+    let columns = [&plot.measured, &plot.as_given, &plot.refitted, &plot.improved];
+    [0, rows].contains(&plot.learned.len()) && columns.iter().all(|column| column.len() == rows)
 }

@@ -31,13 +31,9 @@ pub fn merged(contact: Report, drive: Report, coordinate: Coordinate) -> Report 
         }
     }
     diagnosis.findings.extend(other.findings);
+    plots.evidence.extend(other_plots.evidence);
     plots.traces.extend(other_plots.traces);
     plots.maps.extend(other_plots.maps);
-    for score in other_plots.scores {
-        if plots.scores.iter().all(|known| known.name != score.name) {
-            plots.scores.push(score);
-        }
-    }
     plots.experiment = plots.experiment.or(other_plots.experiment);
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
     (diagnosis, plots)

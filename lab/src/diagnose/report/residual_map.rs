@@ -15,6 +15,10 @@ const LEAST_SHARE: f64 = 0.02;
 /// Bins along a quantity.
 const BINS: usize = 8;
 
+/// Part of what the answer gains in a trial that the stretch which shows it holds, and the blocks that it is made of.
+const SHOWN_PART: f64 = 0.6;
+const BLOCKS: usize = 200;
+
 /// A row of a channel: its state, and the power of the residual in it.
 pub(super) struct ResidualRow {
     /// Number of the trial.
@@ -33,6 +37,8 @@ pub(super) struct ResidualRow {
     pub(super) after: f64,
     /// Expected square by the sensors alone.
     pub(super) noise: f64,
+    /// What the answer takes of `before`.
+    pub(super) gained: f64,
 }
 
 impl ResidualRow {
@@ -101,6 +107,37 @@ impl ChannelResidual<'_> {
             share,
             states: format!("x {}, |v| {}", quantity::between(low, high, metre), quantity::between(slow, fast, speed)),
         })
+    }
+
+    /// The trial that gains most by the answer, and the shortest stretch of it, in seconds, that holds most of that; `None` where
+    /// nothing is gained.
+    pub(super) fn shortest_stretch(&self) -> Option<(usize, [f64; 2])> {
+        let trials: Vec<&[ResidualRow]> = self.rows.chunk_by(|a, b| a.trial == b.trial).collect();
+        let blocks = |rows: &[ResidualRow]| -> Vec<(f64, [f64; 2])> {
+            let size = rows.len().div_ceil(BLOCKS).max(1);
+            let each = rows.chunks(size).map(|block| {
+                let gained: f64 = block.iter().map(|row| row.gained).sum();
+                (gained.max(0.0), [block[0].time_s, block[block.len() - 1].time_s])
+            });
+            each.collect()
+        };
+        let sum = |blocks: &[(f64, [f64; 2])]| blocks.iter().map(|block| block.0).sum::<f64>();
+        let all = trials.into_iter().map(|rows| (rows[0].trial, blocks(rows)));
+        let (trial, blocks) = all.max_by(|a, b| sum(&a.1).total_cmp(&sum(&b.1)))?;
+        let wanted = SHOWN_PART * sum(&blocks);
+        let (mut first, mut held, mut shortest) = (0, 0.0, None::<[usize; 2]>);
+        for last in 0..blocks.len() {
+            held += blocks[last].0;
+            while held - blocks[first].0 >= wanted && first < last {
+                held -= blocks[first].0;
+                first += 1;
+            }
+            if held >= wanted && shortest.is_none_or(|[from, to]| last - first < to - from) {
+                shortest = Some([first, last]);
+            }
+        }
+        let [first, last] = shortest.filter(|_| wanted > 0.0)?;
+        Some((trial, [blocks[first].1[0], blocks[last].1[1]]))
     }
 
     /// The maps of the page.
@@ -219,6 +256,7 @@ mod tests {
                 before,
                 after: 1.0,
                 noise: 1.0,
+                gained: before - 1.0,
             })
         };
         ChannelResidual {
@@ -251,6 +289,19 @@ mod tests {
             assert!(sum < 1.0 + 1e-12, "{}: {sum}", map.along);
         }
         assert_eq!(residual.maps()[0].share, [0.0, 30.0 / 110.0, 0.0, 80.0 / 110.0]);
+    }
+
+    #[test]
+    fn the_stretch_that_is_shown_holds_most_and_nothing_beside() {
+        let columns = [vec![vec![1.0; 40]], vec![vec![1.0; 40]]];
+        // 80 of 110 are gained in the last ten rows, 8 a row: nine of them hold three fifths.
+        let (trial, [start, end]) =
+            residual([&columns[0], &columns[1]]).shortest_stretch().expect("something is gained");
+        assert_eq!(trial, 0);
+        assert!((3.0..3.15).contains(&start) && (3.75..3.95).contains(&end), "{start} {end}");
+        let mut still = residual([&columns[0], &columns[1]]);
+        still.rows.iter_mut().for_each(|row| row.gained = -1.0);
+        assert!(still.shortest_stretch().is_none());
     }
 
     #[test]

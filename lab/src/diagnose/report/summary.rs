@@ -1,12 +1,21 @@
 //! The answer in words that a mechanic understands.
 
-use super::diagnosis::{Diagnosis, Verdict};
+use super::diagnosis::{Diagnosis, FitQuality, Location, Verdict};
 use crate::diagnose::phase;
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
 /// Residual over the sensors' own that is still called theirs: their noise is known to some 15 %.
 const MOST_OVER_NOISE: f64 = 1.15;
+
+/// Share of a mismatch from which a place holds most of it.
+pub const MOST: f64 = 0.5;
+
+/// Whether what the answer leaves is what the sensors leave.
+#[must_use]
+pub fn is_noise(fit: &FitQuality) -> bool {
+    fit.improved < MOST_OVER_NOISE * fit.noise_floor
+}
 
 /// One sentence or two.
 #[must_use]
@@ -15,7 +24,11 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
     let unit = fit.unit;
     let (before, after) = (quantity::rounded(fit.refitted, unit, 3), quantity::rounded(fit.improved, unit, 3));
     let expected_noise = quantity::rounded(fit.noise_floor, unit, 3);
-    let rotary = if coordinate == Coordinate::Rotary { "torque" } else { "force" };
+    let lacks = match (fit.channel, coordinate) {
+        ("effort", _) => "effort",
+        (_, Coordinate::Rotary) => "torque",
+        _ => "force",
+    };
     match answer.verdict {
         Verdict::NoMismatch => {
             format!(
@@ -25,18 +38,19 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
         Verdict::Parameters => {
             let given = quantity::rounded(fit.as_given, unit, 3);
             format!(
-                "No physics is missing, only values are off: refitted, the residual {rotary} falls from {given} to {before}, where the sensors leave {expected_noise}."
+                "No physics is missing, only values are off: refitted, the residual {lacks} falls from {given} to {before}, where the sensors leave {expected_noise}."
             )
         }
         Verdict::Unknown => {
-            let place = answer.locations.first().map_or(String::new(), |location| {
-                format!(
-                    " {} of it lies in the {} during {}.",
-                    quantity::percent(100.0 * location.share),
-                    location.channel,
-                    phase::word(location.phase)
-                )
-            });
+            let place =
+                answer.locations.first().filter(|place| place.share >= MOST).map_or(String::new(), |location| {
+                    format!(
+                        " {} of it lies in the {}{}.",
+                        quantity::percent(100.0 * location.share),
+                        location.channel,
+                        during(location)
+                    )
+                });
             format!(
                 "Something is missing that no effect of the list explains: {before} are left where the sensors leave {expected_noise}.{place}"
             )
@@ -46,7 +60,7 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 answer.physics.iter().filter(|p| p.name != "unknown").map(|p| p.name.replace('_', " ")).collect();
             let rest = if answer.verdict == Verdict::PartlyExplained {
                 format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")
-            } else if fit.improved < MOST_OVER_NOISE * fit.noise_floor {
+            } else if is_noise(fit) {
                 format!(" That is what the sensors leave ({expected_noise}).")
             } else {
                 format!(" The sensors alone would leave {expected_noise}.")
@@ -62,11 +76,18 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 format!(" These data cannot tell it from {}.", all.join(" or "))
             };
             format!(
-                "The simulation leaves out {}: with it the residual {} falls from {before} to {after} on data that no fit saw.{rest}{rivals}",
-                listed(&names),
-                if fit.channel == "effort" { "effort" } else { rotary }
+                "The simulation leaves out {}: with it the residual {lacks} falls from {before} to {after} on data that no fit saw.{rest}{rivals}",
+                listed(&names)
             )
         }
+    }
+}
+
+/// The phase of contact, where there is one: an axis that moves freely has none.
+fn during(location: &Location) -> String {
+    match location.phase {
+        phase::Phase::Free if location.channel == "effort" => String::new(),
+        phase => format!(" during {}", phase::word(phase)),
     }
 }
 

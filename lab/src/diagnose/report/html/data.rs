@@ -1,27 +1,27 @@
 //! The traces inside the page.
 
-use super::super::diagnosis::{Diagnosis, PlotData, Trace};
+use super::super::diagnosis::{Diagnosis, PlotData, Trace, Verdict};
 use super::trial::{Trial, compared, lines};
 use crate::page::{column, thin};
 use serde::Serialize;
 use std::io::{self, Write};
 
 /// Numbers that a row of a trace takes: a time counts twice.
-const NUMBERS_PER_ROW: usize = 9;
+const NUMBERS_PER_ROW: usize = 10;
 
 #[derive(Serialize)]
 struct Description<'a> {
     position: &'a str,
     force: &'a str,
     lines: Vec<DescribedLine>,
-    compared: [&'a str; 2],
+    compared: Vec<&'a str>,
     trials: Vec<DescribedTrial>,
 }
 
 #[derive(Serialize)]
 struct DescribedLine {
     key: &'static str,
-    name: &'static str,
+    name: String,
 }
 
 #[derive(Serialize)]
@@ -29,6 +29,10 @@ struct DescribedTrial {
     traces: Vec<DescribedTrace>,
     /// The largest first, in seconds from the first row.
     places: Vec<DescribedPlace>,
+    /// The shortest stretch that shows the answer, where it shows in this trial.
+    opens: Option<[f64; 2]>,
+    /// Whether depths count from a surface.
+    touches: bool,
 }
 
 #[derive(Serialize)]
@@ -55,9 +59,12 @@ pub(super) fn write(
     let description = Description {
         position: pictures.position_unit,
         force: pictures.force_unit,
-        lines: lines(answer).into_iter().map(|line| DescribedLine { key: line.key, name: line.name }).collect(),
-        compared: compared(answer),
-        trials: trials.iter().map(describe).collect(),
+        lines: lines(answer, pictures)
+            .into_iter()
+            .map(|line| DescribedLine { key: line.key, name: line.name })
+            .collect(),
+        compared: compared(answer, pictures),
+        trials: trials.iter().map(|trial| describe(trial, answer, pictures)).collect(),
     };
     column::description(&description, out)?;
     let budget = thin::budget(NUMBERS_PER_ROW * pictures.traces.len());
@@ -69,7 +76,7 @@ pub(super) fn write(
     Ok(())
 }
 
-fn describe(trial: &Trial<'_>) -> DescribedTrial {
+fn describe(trial: &Trial<'_>, answer: &Diagnosis, pictures: &PlotData) -> DescribedTrial {
     let traces = trial.traces.iter();
     let places = trial.places.iter().filter(|place| place.start_s.is_finite() && place.end_s.is_finite());
     DescribedTrial {
@@ -77,7 +84,15 @@ fn describe(trial: &Trial<'_>) -> DescribedTrial {
         places: places
             .map(|place| DescribedPlace { channel: place.channel, start: place.start_s, end: place.end_s })
             .collect(),
+        opens: opens(trial, answer, pictures),
+        touches: trial.traces.iter().any(|(_, trace)| trace.channel == "force"),
     }
+}
+
+/// The stretch that a trial opens on; none where nothing is to be shown.
+fn opens(trial: &Trial<'_>, answer: &Diagnosis, pictures: &PlotData) -> Option<[f64; 2]> {
+    let plot = pictures.evidence.iter().find(|plot| plot.trial == trial.name)?;
+    (answer.verdict != Verdict::NoMismatch).then_some(plot.stretch_s)
 }
 
 /// The rows that look like all of them, and of the largest places as many as may be, for there the page looks closely.
@@ -127,6 +142,9 @@ fn columns(id: usize, trace: &Trace, rows: &[usize], out: &mut impl Write) -> io
     ];
     for (name, values) in floats {
         column::write(out, &format!("t{id}-{name}"), rows, |row| values[row].to_le_bytes())?;
+    }
+    if !trace.learned.is_empty() {
+        column::write(out, &format!("t{id}-learned"), rows, |row| trace.learned[row].to_le_bytes())?;
     }
     Ok(())
 }

@@ -9,12 +9,18 @@ use maud::{Markup, html};
 pub(super) fn section(answer: &Diagnosis) -> Markup {
     html! {
         @if !answer.physics.is_empty() {
-            section #physics aria-label="What is missing" { @for physics in &answer.physics { (card(physics)) } }
+            section #physics aria-label="What is missing" { @for physics in &answer.physics { (card(physics, only(answer, physics))) } }
         }
     }
 }
 
-fn card(physics: &Physics) -> Markup {
+/// Whether nothing else is named in its channel.
+fn only(answer: &Diagnosis, physics: &Physics) -> bool {
+    let beside = |other: &&Physics| other.name != "unknown" && other.channel == physics.channel;
+    answer.physics.iter().filter(beside).count() < 2
+}
+
+fn card(physics: &Physics, only: bool) -> Markup {
     let unknown = physics.name == "unknown";
     html! {
         article.effect.unnamed[unknown] {
@@ -26,9 +32,9 @@ fn card(physics: &Physics) -> Markup {
             @if !physics.equation.is_empty() { p.equation { (physics.equation) } }
             @if !physics.parameters.is_empty() {
                 dl.values { @for value in &physics.parameters { (parameter(&physics.name, value)) } }
-                p.fine { "± and ranges span 95 %." }
+                p.fine { "± and ranges span 95 %, widened by what the law leaves and by what the halves of the recordings disagree about." }
             }
-            p.fine { (evidence(physics, unknown)) }
+            @if !unknown { p.fine { (evidence(physics, only)) } }
             @if let Some(regressor) = &physics.on_drive {
                 p.fine { "In the control loop: " (regressor) "." }
             }
@@ -61,14 +67,11 @@ fn meaning(effect: &str, parameter: &str) -> Option<&'static str> {
     all.find(|known| known.name == parameter).map(|known| known.meaning)
 }
 
-fn evidence(physics: &Physics, unknown: bool) -> Markup {
+fn evidence(physics: &Physics, only: bool) -> Markup {
     let evidence = physics.evidence;
     html! {
-        @if unknown {
-            "Evidence that it is there: " (odds(evidence.p_value)) "."
-        } @else {
-            "On data that no fit saw, it takes away " (gain(evidence.held_out_gain)) " of the energy of what is missing; "
-            (odds(evidence.p_value)) "."
-        }
+        "On data that no fit saw, it takes away " (gain(evidence.held_out_gain)) " of what the law without it leaves above the noise"
+        @if !only { ", the other named effects in place" }
+        "; " (odds(evidence.p_value)) "."
     }
 }

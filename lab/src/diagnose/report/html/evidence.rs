@@ -1,117 +1,57 @@
-//! The evidence against alternatives, and the experiment that would decide.
+//! The answer against what else would do, on one measure, and the experiment that would decide.
 
-use super::super::diagnosis::{Alternative, Diagnosis, EffectEvidence, PlotData, Verdict};
-use super::axis::across;
-use super::wording::{gain, list, probability, title};
+use super::super::diagnosis::{Alternative, Diagnosis, FitQuality, PlotData};
+use super::wording::{channel, gain, heading, list, title};
 use super::{experiment, names_physics};
 use maud::{Markup, html};
 
-/// Height of a bar with its words, px.
-const BAR_HEIGHT_PX: usize = 38;
-/// Bars without a role beyond these are folded away.
-const MAX_BARS: usize = 8;
-
-/// Bars, alternatives and reference; nothing where no effect was tried.
+/// A table a channel that is explained, and the reference to run; nothing where nothing is named.
 pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
-    if pictures.scores.is_empty() && answer.alternatives.is_empty() && pictures.experiment.is_none() {
-        return html! { p.nothing { "No single effect is weighed against another here: there is no evidence for any of them." } };
+    if !names_physics(answer) && pictures.experiment.is_none() {
+        return html! {};
     }
+    let explained = answer.channels.iter().filter(|fit| !named(answer, fit.channel).is_empty());
     html! {
         section #evidence aria-labelledby="evidence-title" {
-            h2 #evidence-title { (if names_physics(answer) { "Evidence against rivals" } else { "Would other physics help?" }) }
-            (scores(answer, &pictures.scores))
-            (rivals(answer))
+            h2 #evidence-title { "The answer, and what else would do" }
+            p.fine {
+                "Takes away: of what refitted values leave in the channel above the sensors' noise, the share that is gone with these effects, on stretches of the recordings that no fit saw."
+            }
+            @for fit in explained { (table(answer, fit)) }
             @if let Some(next) = &pictures.experiment { (experiment::figure(next, pictures)) }
         }
     }
 }
 
-fn scores(answer: &Diagnosis, scores: &[EffectEvidence]) -> Markup {
-    // What has a role is shown wherever it stands.
-    let (first, rest): (Vec<_>, Vec<_>) =
-        scores.iter().enumerate().partition(|(rank, bar)| *rank < MAX_BARS || !bar.role.is_empty());
-    html! {
-        @if !scores.is_empty() {
-            p.fine {
-                "How much of what is missing each effect takes away when it is added alone, on data that no fit saw. p: how likely chance alone does as much; only small ones count. "
-                @if !names_physics(answer) { (nothing_named(answer.verdict)) }
-            }
-            (bars(&first))
-            @if !rest.is_empty() {
-                details { summary { (rest.len()) " weaker effects" } (bars(&rest)) }
-            }
-        }
-    }
+/// Effects that the answer names in a channel.
+fn named(answer: &Diagnosis, channel: &str) -> Vec<String> {
+    let physics = answer.physics.iter().filter(|physics| physics.name != "unknown" && physics.channel == channel);
+    physics.map(|physics| title(&physics.name)).collect()
 }
 
-fn nothing_named(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Unknown => "None of them takes away enough to be named.",
-        _ => "None of them was needed: their gains are what chance gives.",
-    }
-}
-
-fn bars(scores: &[(usize, &EffectEvidence)]) -> Markup {
-    let told: Vec<String> = scores
-        .iter()
-        .map(|(_, bar)| {
-            let role = if bar.role.is_empty() { String::new() } else { format!(" ({})", bar.role) };
-            format!("{}{role}: {}, {}", title(bar.name), gain(bar.held_out_gain), probability(bar.p_value))
-        })
-        .collect();
-    let label = format!("What each effect takes away of what is missing. {}.", told.join("; "));
+fn table(answer: &Diagnosis, fit: &FitQuality) -> Markup {
+    let others: Vec<&Alternative> = answer.alternatives.iter().filter(|other| other.channel == fit.channel).collect();
     html! {
-        svg.bars role="img" aria-label=(label) height=(BAR_HEIGHT_PX * scores.len()) {
-            @for (row, (_, bar)) in scores.iter().enumerate() { (drawn(bar, row * BAR_HEIGHT_PX)) }
-        }
-    }
-}
-
-fn drawn(bar: &EffectEvidence, top: usize) -> Markup {
-    let class = match bar.role {
-        "answer" => "improved",
-        "rival" => "rival",
-        _ => "other",
-    };
-    html! {
-        text.strong[!bar.role.is_empty()] x="0" y=(top + 15) {
-            (title(bar.name))
-            @if !bar.role.is_empty() { tspan.(class) { " ● " (bar.role) } }
-        }
-        text.figure x="100%" y=(top + 15) text-anchor="end" {
-            (gain(bar.held_out_gain)) tspan.soft { ", " (probability(bar.p_value)) }
-        }
-        rect.track x="0" y=(top + 21) width="100%" height="9" {}
-        @if bar.held_out_gain > 0.0 {
-            rect.(class) x="0" y=(top + 21) width=(across(bar.held_out_gain.min(1.0))) height="9" {}
-        }
-    }
-}
-
-fn rivals(answer: &Diagnosis) -> Markup {
-    if answer.alternatives.is_empty() {
-        return html! {
-            @if names_physics(answer) { p { "There are no rivals: nothing else that was tried explains these recordings as well." } }
-        };
-    }
-    html! {
-        h3 { "What these recordings cannot tell from the answer" }
-        div.wide tabindex="0" role="region" aria-label="Rivals" {
+        div.wide tabindex="0" role="region" aria-label={ "Explanations of the " (channel(fit.channel)) } {
             table.rivals {
-                thead { tr { th scope="col" { "It could as well be" } th scope="col" { "Takes away" } th scope="col" { "What would tell them apart" } } }
-                tbody { @for rival in &answer.alternatives { (of_rival(rival)) } }
+                thead { tr { th scope="col" { (heading(channel(fit.channel))) } th scope="col" { "Takes away" } th scope="col" { "What would tell it from the answer" } } }
+                tbody {
+                    tr.best { th scope="row" { (list(&named(answer, fit.channel))) " " span.mark { "answer" } } td { (gain(fit.explained_share)) } td { "–" } }
+                    @for other in &others { (row(other)) }
+                }
             }
         }
+        @if others.is_empty() { p.fine { "Nothing else that was tried explains the " (channel(fit.channel)) " of these recordings as well." } }
     }
 }
 
-fn of_rival(rival: &Alternative) -> Markup {
-    let names: Vec<String> = rival.physics.iter().map(|name| title(name)).collect();
+fn row(other: &Alternative) -> Markup {
+    let names: Vec<String> = other.physics.iter().map(|name| title(name)).collect();
     html! {
         tr {
-            th scope="row" { (list(&names)) }
-            td { (gain(rival.held_out_gain)) }
-            td { (rival.separated_by) }
+            th scope="row" { (list(&names)) " " span.mark.open { "not ruled out" } }
+            td { (gain(other.held_out_gain)) }
+            td { (other.separated_by) }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What was checked, what was found on the way, and what to record next.
 
 use super::super::diagnosis::{Diagnosis, Finding, PlotData, Verdict};
-use super::wording::{phase, title, worst};
+use super::wording::{place_words, title, worst};
 use crate::effects::{self, Place};
 use maud::{Markup, html};
 
@@ -97,12 +97,12 @@ fn advice(answer: &Diagnosis, pictures: &PlotData) -> Vec<String> {
 /// Where something is there that nothing explains, more of the same place tells what it depends on.
 fn closer_look(answer: &Diagnosis) -> String {
     let place = match worst(answer, None) {
-        Some(place) if !place.states.is_empty() => format!("{} ({})", phase(place.phase), place.states),
-        Some(place) => phase(place.phase).into(),
+        Some(place) if !place.states.is_empty() => format!("{}{}", place_words(place), place.states),
+        Some(place) => place_words(place).trim_end_matches(", ").into(),
         None => "wherever it shows".into(),
     };
     format!(
-        "To see what the unexplained part depends on, record more of where it lies, {place}: once slowly, once fast, once deep and once shallow."
+        "To see what the unexplained part depends on, record more of where it lies ({place}): once slowly, once fast, once deep and once shallow."
     )
 }
 

@@ -20,7 +20,7 @@ pub(super) fn section(answer: &Diagnosis) -> Markup {
             p.fine {
                 "Each bar is the typical error (root mean square) of a simulation: as given, with the same physics and refitted values"
                 @if names_physics(answer) { ", and with the named physics added" }
-                ". Shorter is better, and the noise of the sensors is the floor. Every figure is from stretches of the recordings that no fit saw, so more numbers to turn do not by themselves shorten a bar."
+                ". Shorter is better, and the expected noise is what the sensors alone would leave. Every figure is from stretches of the recordings that no fit saw, so more numbers to turn do not by themselves shorten a bar."
             }
             div.pair { @for goodness in channels { (figure(answer, goodness)) } }
         }
@@ -37,7 +37,7 @@ fn figure(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
         figure {
             figcaption {
                 h3 { (heading(channel(goodness.channel))) }
-                p { (looked_at(goodness)) @if axis.logarithmic { "Logarithmic: each tick is ten times the one before it." } }
+                p { (analysed(goodness)) @if axis.logarithmic { "Logarithmic: each tick is ten times the one before it." } }
             }
             svg.bars role="img" aria-label=(label) height=(ROW * bars.len()) {
                 @for (row, bar) in bars.iter().enumerate() { (drawn(&axis, goodness, bar, row)) }
@@ -47,25 +47,25 @@ fn figure(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     }
 }
 
-struct EffectEvidence {
+struct Bar {
     name: &'static str,
     class: &'static str,
     value: f64,
 }
 
-fn bars(answer: &Diagnosis, goodness: &FitQuality) -> Vec<EffectEvidence> {
+fn bars(answer: &Diagnosis, goodness: &FitQuality) -> Vec<Bar> {
     let mut bars = vec![
-        EffectEvidence { name: "as given", class: "given", value: goodness.as_given },
-        EffectEvidence { name: "values refitted", class: "refitted", value: goodness.refitted },
+        Bar { name: "as given", class: "given", value: goodness.as_given },
+        Bar { name: "values refitted", class: "refitted", value: goodness.refitted },
     ];
     if names_physics(answer) {
-        bars.push(EffectEvidence { name: "with named physics", class: "improved", value: goodness.improved });
+        bars.push(Bar { name: "with named physics", class: "improved", value: goodness.improved });
     }
-    bars.push(EffectEvidence { name: "noise floor", class: "floor", value: goodness.noise_floor });
+    bars.push(Bar { name: "expected noise", class: "floor", value: goodness.noise_floor });
     bars
 }
 
-fn drawn(axis: &Axis, goodness: &FitQuality, bar: &EffectEvidence, row: usize) -> Markup {
+fn drawn(axis: &Axis, goodness: &FitQuality, bar: &Bar, row: usize) -> Markup {
     let top = row * ROW;
     let times_floor = bar.value / goodness.noise_floor;
     html! {
@@ -87,9 +87,9 @@ fn grid(axis: &Axis, decade: f64, top: usize) -> Markup {
     html! { line.decade x1=(across(at)) x2=(across(at)) y1=(top) y2=(top + 20) {} }
 }
 
-fn looked_at(goodness: &FitQuality) -> String {
+fn analysed(goodness: &FitQuality) -> String {
     let known = goodness.band_hz.is_finite() && goodness.band_hz > 0.0;
-    if known { format!("Looked at up to {}. ", rounded(goodness.band_hz, "Hz", 3)) } else { String::new() }
+    if known { format!("Analysed up to {}. ", rounded(goodness.band_hz, "Hz", 3)) } else { String::new() }
 }
 
 fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {

@@ -1,39 +1,44 @@
-//! The answer in one sentence, and what it names.
+//! The answer in one heading and one sentence, the picture that shows it, and what it names.
 
 use super::super::diagnosis::{Diagnosis, PlotData, Verdict};
-use super::wording::{channel, location, share, worst};
-use super::{effect, finding};
+use super::super::summary::is_noise;
+use super::wording::{channel, largest_part, list, location, multiple, share, title, worst};
+use super::{effect, finding, state_plot};
+use crate::page::quantity::rounded;
 use maud::{Markup, html};
 
 /// The head of the page.
 pub(super) fn header(answer: &Diagnosis, pictures: &PlotData) -> Markup {
-    let (class, word) = verdict(answer.verdict);
+    let (class, word) = verdict(answer);
     html! {
         header {
-            p.eyebrow { "Palpate diagnose · simulation against recordings" }
-            h1 { (pictures.rig) ": what does the simulation leave out?" }
-            p.verdict.(class) { (word) }
+            p.eyebrow { "Palpate diagnose · " (pictures.rig) ": what does the simulation leave out?" }
+            h1.verdict.(class) { (word) }
             p.lead { (answer.summary) }
             p.aside { (meaning(answer)) }
         }
         (finding::grave(answer))
+        (state_plot::section(answer, pictures))
         (effect::section(answer))
     }
 }
 
 /// A class of the style and the words for a reader.
-fn verdict(verdict: Verdict) -> (&'static str, &'static str) {
-    match verdict {
-        Verdict::NoMismatch => ("good", "No mismatch"),
-        Verdict::Parameters => ("values", "Other values, no other physics"),
-        Verdict::Explained => ("named", "Explained"),
-        Verdict::PartlyExplained => ("partly", "Partly explained"),
-        Verdict::Unknown => ("unknown", "Unknown physics"),
+fn verdict(answer: &Diagnosis) -> (&'static str, String) {
+    let named: Vec<String> =
+        answer.physics.iter().filter(|physics| physics.name != "unknown").map(|physics| title(&physics.name)).collect();
+    match answer.verdict {
+        Verdict::NoMismatch => ("good", "No mismatch".into()),
+        Verdict::Parameters => ("values", "Other values, no other physics".into()),
+        Verdict::Explained => ("named", format!("Explained by {}", list(&named))),
+        Verdict::PartlyExplained => ("partly", format!("Partly explained by {}", list(&named))),
+        Verdict::Unknown => ("unknown", "Unknown physics".into()),
     }
 }
 
 /// What the verdict means for whoever has to act on it.
 fn meaning(answer: &Diagnosis) -> Markup {
+    let fit = &answer.fit;
     match answer.verdict {
         Verdict::NoMismatch => html! {
             "The simulation as given differs from these recordings by no more than the sensors' own noise. Nothing is located, and nothing has to be added or changed as far as they can tell."
@@ -41,12 +46,16 @@ fn meaning(answer: &Diagnosis) -> Markup {
         Verdict::Parameters => html! {
             "The equations of the simulation are sufficient; its numbers are not. With the " a href="#nominal" { "fitted values" } " it follows the recordings, so no further physics is named."
         },
-        Verdict::Explained => {
-            html! { "With the physics below added, what is left between simulation and recordings is the sensors' own noise." }
-        }
+        Verdict::Explained if is_noise(fit) => html! {
+            "With the physics below added, what is left between simulation and recordings is the sensors' own noise."
+        },
+        Verdict::Explained => html! {
+            "The physics below takes away " (share(fit.explained_share)) " of what refitted values leave in the " (channel(fit.channel))
+            " above the noise. What stays, " (rounded(fit.improved, fit.unit, 3)) ", is " (multiple(fit.improved / fit.noise_floor)) ": the real laws are not quite those that are named."
+        },
         Verdict::PartlyExplained => html! {
-            "The physics below takes away " (share(answer.fit.explained_share)) " of what refitted values leave in the "
-            (channel(answer.fit.channel)) ". The rest is more than noise, and no effect of the list explains it."
+            "The physics below takes away " (share(fit.explained_share)) " of what refitted values leave in the " (channel(fit.channel))
+            " above the noise. The rest is more than noise, and no effect of the list explains it."
         },
         Verdict::Unknown => unknown(answer),
     }
@@ -57,7 +66,7 @@ fn unknown(answer: &Diagnosis) -> Markup {
         "The recordings hold something real that the simulation lacks, and none of the " (answer.checked.len())
         " effects that were tried explains it. So it is not named: a wrong name would be worse than none."
         @if let Some(place) = worst(answer, None) {
-            " Most of it, " (share(place.share)) " in the " (channel(place.channel)) ", lies " (location(place)) "."
+            " " (largest_part(place)) (location(place)) "."
         }
     }
 }

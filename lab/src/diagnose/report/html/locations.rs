@@ -17,14 +17,24 @@ pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
         section #where aria-labelledby="where-title" {
             h2 #where-title { "Where it is off" }
             (locations(answer))
-            @if pictures.maps.iter().any(|map| !map.labels.is_empty()) { (explanation(improved)) }
-            @for name in CHANNELS {
-                @let maps: Vec<&BinnedResidual> = pictures.maps.iter().filter(|map| map.channel == name && !map.labels.is_empty()).collect();
-                @if !maps.is_empty() {
-                    h3.channel { (heading(channel(name))) }
-                    div.maps { @for map in maps { (binned_residual::figure(map, improved)) } }
+            @if pictures.maps.iter().any(|map| !map.labels.is_empty()) && !answer.locations.is_empty() {
+                details.along {
+                    summary { "By phase, depth, speed, time and frequency" }
+                    (explanation(improved))
+                    @for name in CHANNELS { (maps(pictures, name, improved)) }
                 }
             }
+        }
+    }
+}
+
+fn maps(pictures: &PlotData, name: &str, improved: bool) -> Markup {
+    let maps: Vec<&BinnedResidual> =
+        pictures.maps.iter().filter(|map| map.channel == name && !map.labels.is_empty()).collect();
+    html! {
+        @if !maps.is_empty() {
+            h3.channel { (heading(channel(name))) }
+            div.maps { @for map in maps { (binned_residual::figure(map, improved)) } }
         }
     }
 }

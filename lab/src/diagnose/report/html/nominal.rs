@@ -1,6 +1,6 @@
 //! The nominal values, given against fitted.
 
-use super::super::diagnosis::{Diagnosis, Nominal};
+use super::super::diagnosis::{Diagnosis, Nominal, PlotData};
 use super::names_physics;
 use super::wording::estimate;
 use crate::page::quantity::plain;
@@ -8,7 +8,7 @@ use crate::page::table::difference;
 use maud::{Markup, html};
 
 /// A table; a sentence where nothing was refitted.
-pub(super) fn section(answer: &Diagnosis) -> Markup {
+pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
     if answer.nominal.is_empty() {
         return html! { p.nothing #nominal { "No nominal value was refitted: the recordings bound none of them." } };
     }
@@ -26,8 +26,32 @@ pub(super) fn section(answer: &Diagnosis) -> Markup {
                     tbody { @for value in &answer.nominal { (row(value)) } }
                 }
             }
+            (replayed(answer, pictures))
         }
     }
+}
+
+/// Where the estimators of a drive give other values of the same recording, and why.
+fn replayed(answer: &Diagnosis, pictures: &PlotData) -> Markup {
+    let touches = answer.nominal.iter().any(|value| value.name.starts_with("stiffness"));
+    html! {
+        @if touches {
+            p.fine {
+                "Stiffness and damping of these recordings as a drive estimates them, moment by moment: "
+                code { "palpate replay" }
+                @if let Some(run) = &pictures.run { " (" code { (run.command.replace("palpate diagnose", "palpate replay").split(" --").take(2).collect::<Vec<_>>().join(" --")) } ")" }
+                ". Its law is a spring and a damper alone and its answer the median over the contact"
+                @if names_physics(answer) { ", so it differs from the values above, which hold beside the named physics." }
+                @else if answer.physics.is_empty() { ": it agrees with the values above within both intervals, unless stiffness changes along the way." }
+                @else { "; where physics is missing, either is a compromise, and they weigh the rows differently." }
+            }
+        }
+    }
+}
+
+/// Whether the rig file can state the value.
+fn is_stated(value: &Nominal) -> bool {
+    value.name != "effort_delay_s"
 }
 
 fn row(value: &Nominal) -> Markup {
@@ -35,7 +59,7 @@ fn row(value: &Nominal) -> Markup {
     html! {
         tr {
             th scope="row" { code { (value.name) } }
-            td { (plain(value.given, &value.unit)) }
+            td { @if is_stated(value) { (plain(value.given, &value.unit)) } @else { "–" } }
             td { (estimate(value.fitted, value.ci95, &value.unit)) @if !differs.is_empty() { small { (differs) } } }
             td { (agreement(value)) }
         }
@@ -44,6 +68,12 @@ fn row(value: &Nominal) -> Markup {
 
 fn agreement(value: &Nominal) -> Markup {
     let [low, high] = value.ci95;
+    if !is_stated(value) {
+        return html! { @if low <= 0.0 && 0.0 <= high { "none is seen" } @else { "not in a rig file" } };
+    }
+    if !(low.is_finite() && high.is_finite()) {
+        return html! { "not bounded" };
+    }
     match (low <= value.given && value.given <= high, value.given < low || value.given > high) {
         (true, _) => html! { "agree" },
         (_, true) => html! { strong.off { "differ" } },

@@ -2,7 +2,7 @@
 
 use super::super::diagnosis::{Diagnosis, Location, PlotData, Trace, Verdict};
 use super::names_physics;
-use super::wording::{channel, heading, phase, share, stretch, worst};
+use super::wording::{channel, heading, list, place_words, share, stretch, title, worst};
 use maud::{Markup, html};
 
 /// The channels of one trial.
@@ -20,21 +20,33 @@ pub(super) struct Line {
     /// As the script finds its column.
     pub(super) key: &'static str,
     /// For the reader.
-    pub(super) name: &'static str,
+    pub(super) name: String,
 }
 
 /// The simulations that differ from each other.
-pub(super) fn lines(answer: &Diagnosis) -> Vec<Line> {
-    let mut lines = vec![Line { key: "given", name: "as given" }, Line { key: "refitted", name: "values refitted" }];
+pub(super) fn lines(answer: &Diagnosis, pictures: &PlotData) -> Vec<Line> {
+    let line = |key, name: &str| Line { key, name: name.to_owned() };
+    let mut lines = vec![line("given", "as given"), line("refitted", "values refitted")];
     if names_physics(answer) {
-        lines.push(Line { key: "improved", name: "with named physics" });
+        lines.push(line("improved", &format!("with {}", named(answer))));
+    }
+    if pictures.traces.iter().any(|trace| !trace.learned.is_empty()) {
+        lines.push(line("learned", "with a learned curve"));
     }
     lines
 }
 
-/// Those two whose residuals are compared: what the answer changes.
-pub(super) fn compared(answer: &Diagnosis) -> [&'static str; 2] {
-    if names_physics(answer) { ["refitted", "improved"] } else { ["given", "refitted"] }
+/// The named effects, where they are few enough for a legend.
+fn named(answer: &Diagnosis) -> String {
+    let names: Vec<String> =
+        answer.physics.iter().filter(|physics| physics.name != "unknown").map(|physics| title(&physics.name)).collect();
+    if names.len() > 2 { "named physics".to_owned() } else { list(&names) }
+}
+
+/// Those whose residuals are compared: what the answer changes.
+pub(super) fn compared(answer: &Diagnosis, pictures: &PlotData) -> Vec<&'static str> {
+    let keys: Vec<&'static str> = lines(answer, pictures).iter().map(|line| line.key).collect();
+    if keys.len() > 2 { keys[1..].to_vec() } else { keys }
 }
 
 /// Traces by trial, in the order in which they came.
@@ -66,7 +78,7 @@ pub(super) fn section(trials: &[Trial<'_>], answer: &Diagnosis) -> Markup {
             section #trials aria-labelledby="trials-title" {
                 h2 #trials-title { "Before and after" }
                 p.fine {
-                    @if trials.iter().any(|trial| !trial.places.is_empty()) { "Each trial opens on the place where most of its mismatch lies; such places are shaded. " }
+                    @if trials.iter().any(|trial| !trial.places.is_empty()) { "Each trial opens on the shortest stretch that shows the answer, or on the place where most of its mismatch lies; places are shaded. " }
                     "Drag across a picture to zoom, double-click or press “whole trial” to see all of it."
                 }
                 noscript { p.notices { "These pictures need JavaScript. All other pictures and figures stand without it." } }
@@ -81,7 +93,7 @@ fn fold(trial: &Trial<'_>, index: usize, opened: bool) -> Markup {
         details.trial data-trial=(index) open[opened] {
             summary {
                 strong.file { (trial.name) } " "
-                span.where { @if let Some(place) = trial.places.first() { (share(place.share)) " of the " (channel(place.channel)) "'s mismatch lies " (phase(place.phase)) ", " (stretch(place)) } @else { "no place stands out" } }
+                span.where { @if let Some(place) = trial.places.first() { (share(place.share)) " of the " (channel(place.channel)) "'s mismatch lies " (place_words(place)) (stretch(place)) } @else { "no place stands out" } }
             }
             div.pictures {}
             @let rows = trial.traces.iter().map(|(_, trace)| trace.time.len()).max().unwrap_or_default();
@@ -96,13 +108,14 @@ pub(super) fn templates(answer: &Diagnosis) -> Markup {
         template #toolbar { (toolbar()) }
         @for name in ["force", "effort"] {
             template #{ "figures-" (name) } {
-                (figure("model", &format!("{}: measured and simulated", heading(channel(name))), "What was measured, smoothed, and what each simulation gives for the same motion."))
+                (figure("model", &format!("{}: measured and simulated", heading(channel(name))), "Points are measured; lines are what each simulation gives for the same motion."))
                 (figure("residual", &format!("{}: what is left", heading(channel(name))), left(answer)))
             }
         }
         template #figures-depth {
             (figure("depth", "Depth", "Where the tool was: above the dashed line it is below the surface."))
         }
+        template #figures-position { (figure("depth", "Position", "Where the machine was.")) }
     }
 }
 
@@ -132,7 +145,7 @@ fn toolbar() -> Markup {
         div.toolbar role="group" aria-label="What the pictures show" {
             div.choice.lines role="group" aria-label="Simulations shown" {}
             div.choice.time role="group" aria-label="Time shown" {
-                button.worst type="button" data-move="worst" { "worst place" }
+                button.worst type="button" data-move="worst" { "closest look" }
                 button.whole type="button" data-move="all" { "whole trial" }
                 button type="button" data-move="back" aria-label="Earlier" { "←" }
                 button type="button" data-move="forth" aria-label="Later" { "→" }

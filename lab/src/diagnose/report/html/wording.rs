@@ -1,6 +1,7 @@
 //! Names and figures as a mechanic says them.
 
 use super::super::diagnosis::{Diagnosis, Location, Phase};
+use super::super::summary::MOST;
 use crate::page::quantity::{between, percent, plain, rounded, with_interval};
 use maud::{Markup, html};
 
@@ -36,15 +37,6 @@ pub(super) fn gain(value: f64) -> String {
     }
 }
 
-/// A probability as a statistician writes it.
-pub(super) fn probability(p: f64) -> String {
-    match p {
-        p if !p.is_finite() => "p\u{a0}unknown".into(),
-        p if p < 0.001 => "p\u{a0}<\u{a0}0.001".into(),
-        p => format!("p\u{a0}=\u{a0}{}", rounded(p, "1", if p < 0.1 { 1 } else { 2 })),
-    }
-}
-
 /// A probability as anybody says it.
 pub(super) fn odds(p: f64) -> String {
     match p {
@@ -76,6 +68,9 @@ pub(super) fn multiple(ratio: f64) -> String {
 /// A value with its 95 % interval: by its half-width where it reaches as far to both sides, by its ends otherwise.
 pub(super) fn estimate(value: f64, [low, high]: [f64; 2], unit: &str) -> String {
     let (below, above) = (value - low, high - value);
+    if below == 0.0 && above == 0.0 {
+        return format!("{} (chosen, not fitted)", plain(value, unit));
+    }
     if !(below.is_finite() && above.is_finite()) {
         return format!("{} (interval unknown)", plain(value, unit));
     }
@@ -109,7 +104,15 @@ pub(super) fn phase(phase: Phase) -> &'static str {
 
 /// "at onset, trial-1.csv, 2.31 to 2.35 s, x 0-2 mm".
 pub(super) fn location(location: &Location) -> Markup {
-    html! { (phase(location.phase)) ", " span.file { (location.trial) "," } " " (stretch(location)) }
+    html! { (place_words(location)) span.file { (location.trial) "," } " " (stretch(location)) }
+}
+
+/// "at onset, as the contact begins, "; nothing of a drive without contact.
+pub(super) fn place_words(location: &Location) -> String {
+    match location.phase {
+        Phase::Free if location.channel == "effort" => String::new(),
+        known => format!("{}, ", phase(known)),
+    }
 }
 
 /// "2.31 to 2.35 s, x 0-2 mm".
@@ -124,6 +127,12 @@ pub(super) fn stretch(location: &Location) -> Markup {
 pub(super) fn worst<'a>(answer: &'a Diagnosis, trial: Option<&str>) -> Option<&'a Location> {
     let of_trial = answer.locations.iter().filter(|location| trial.is_none_or(|trial| location.trial == trial));
     of_trial.filter(|location| location.share.is_finite()).max_by(|a, b| a.share.total_cmp(&b.share))
+}
+
+/// "Most of it, 64 % in the force, lies "; of less than half, "The largest part in one place, ...".
+pub(super) fn largest_part(place: &Location) -> String {
+    let part = if place.share >= MOST { "Most of it" } else { "The largest part of it in one place" };
+    format!("{part}, {} in the {}, lies ", share(place.share), channel(place.channel))
 }
 
 /// "a, b and c".

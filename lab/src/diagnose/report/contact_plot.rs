@@ -1,0 +1,99 @@
+//! What the page draws of a contact: force over time, and over depth.
+
+use super::contact_report::CHANNEL;
+use super::diagnosis::{StatePlot, Trace};
+use super::traversals;
+use crate::diagnose::contact::outcome::Outcome;
+use crate::rig::Coordinate;
+
+/// Part of a pass that is drawn before the touch and after the release.
+const APPROACH: f64 = 0.15;
+
+/// Passes as long as this many of the stretch that shows the answer are drawn in part.
+const MOST_STRETCHES: f64 = 40.0;
+
+/// Force by a law, from what it leaves.
+fn by(outcome: &Outcome, residual: &[Vec<f64>], trial: usize) -> Vec<f32> {
+    let rows = outcome.trials[trial].force.iter().zip(&residual[trial]);
+    rows.map(|(force, left)| (force - left) as f32).collect()
+}
+
+/// Force by the law with the learned element; empty where there is none.
+fn by_learned(outcome: &Outcome, trial: usize) -> Vec<f32> {
+    outcome.learned.as_ref().map_or_else(Vec::new, |curve| by(outcome, &curve.residual, trial))
+}
+
+fn depth(outcome: &Outcome, trial: usize) -> Vec<f32> {
+    let surface = outcome.chosen.model.surface(&outcome.chosen.values, trial);
+    outcome.trials[trial].position.iter().map(|position| (position - surface) as f32).collect()
+}
+
+/// One trace a trial.
+pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
+    let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
+        let noise = |weight: &f64| if *weight > 0.0 { weight.recip() as f32 } else { outcome.expected_noise as f32 };
+        Trace {
+            trial: trial.name.clone(),
+            channel: CHANNEL,
+            time: trial.time.iter().map(|time| trial.origin_s + time).collect(),
+            depth: depth(outcome, at),
+            measured: trial.force.iter().map(|force| *force as f32).collect(),
+            as_given: by(outcome, &outcome.residuals[0], at),
+            refitted: by(outcome, &outcome.residuals[1], at),
+            improved: by(outcome, &outcome.residuals[2], at),
+            learned: by_learned(outcome, at),
+            expected_noise: outcome.weights[at].iter().map(noise).collect(),
+            valid: outcome.weights[at].iter().map(|weight| *weight > 0.0).collect(),
+        }
+    });
+    each.collect()
+}
+
+/// Force over depth, over the pass around the stretch `shown` of a trial; over the first trial where no stretch stands out.
+pub(super) fn force_over_depth(
+    outcome: &Outcome,
+    shown: Option<(usize, [f64; 2])>,
+    coordinate: Coordinate,
+) -> Option<StatePlot> {
+    let first = outcome.trials.first()?;
+    let (trial, stretch_s) = shown.unwrap_or((0, [0.0, first.time.last().copied()?]));
+    let depth = depth(outcome, trial);
+    let time = &outcome.trials[trial].time;
+    let rows = pass(time, &depth, stretch_s, outcome.chosen.model.bilateral);
+    let touching = (rows.start..rows.end).find(|row| time[*row] >= stretch_s[0] && depth[*row] > 0.0);
+    let rows = traversals::limited(&depth, rows.clone(), touching.unwrap_or(rows.start));
+    let of = |column: Vec<f32>| column.get(rows.clone()).map(<[f32]>::to_vec).unwrap_or_default();
+    Some(StatePlot {
+        channel: CHANNEL,
+        trial: outcome.trials[trial].name.clone(),
+        stretch_s,
+        drawn_s: [*time.get(rows.start)?, *time.get(rows.end - 1)?],
+        along: "depth",
+        unit: coordinate.position_unit(),
+        ordinate: if coordinate == Coordinate::Rotary { "torque" } else { "force" },
+        ordinate_unit: coordinate.force_unit(),
+        measured: of(outcome.trials[trial].force.iter().map(|force| *force as f32).collect()),
+        as_given: of(by(outcome, &outcome.residuals[0], trial)),
+        refitted: of(by(outcome, &outcome.residuals[1], trial)),
+        improved: of(by(outcome, &outcome.residuals[2], trial)),
+        learned: of(by_learned(outcome, trial)),
+        state: of(depth),
+    })
+}
+
+/// The rows from before the touch to after the release around the stretch from `start` to `end`.
+fn pass(time: &[f64], depth: &[f32], [start, end]: [f64; 2], bilateral: bool) -> std::ops::Range<usize> {
+    let at = |moment: f64| time.partition_point(|time| *time < moment);
+    let longest = MOST_STRETCHES * (end - start).max(f64::MIN_POSITIVE);
+    let (least, most) = (at(start - longest), at(end + longest).max(at(start) + 1).min(time.len()));
+    if bilateral {
+        return least..most;
+    }
+    let touches = |row: &usize| depth[*row] > 0.0;
+    // Where the stretch itself lies before the touch or after the release, the contact beside it comes first.
+    let from = (least..at(start)).rev().skip_while(|row| !touches(row)).find(|row| !touches(row)).unwrap_or(least);
+    let until = (at(end)..most).skip_while(touches).next().unwrap_or(most);
+    let until = until.max(at(end)).min(most);
+    let margin = APPROACH * (time[until.min(time.len() - 1)] - time[from]);
+    at(time[from] - margin).max(least)..at(time[until.min(time.len() - 1)] + margin).clamp(from + 1, most)
+}
