@@ -70,7 +70,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "a ripple that no law has",
-        added: Some(|_, x| if x > 0.0 { 0.4 * (std::f64::consts::TAU * x / 4e-3).sin() } else { 0.0 }),
+        added: Some(|_, x| if x > 0.0 { 0.6 * (std::f64::consts::TAU * x / 3e-3).sin() } else { 0.0 }),
         ..PLAIN
     },
     Case { name: "a wandering force", added: Some(|t, _| 0.15 * (2.3 * t * t).sin()), ..PLAIN },
