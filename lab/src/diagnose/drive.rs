@@ -6,8 +6,9 @@
 //! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
 //!
 //! [`trial`] and [`input`] are the data, [`law`] and [`noise`] the equations, [`filter`] gives the [`innovations`] of one body or two,
-//! [`model`] and [`term`] are what can be in a law, [`fit`] the likelihood, [`nominal`] the law of the rig file, [`candidates`], [`links`] and [`selection`] the choice with its [`criteria`],
-//! [`held_out`] and [`interval`] the evidence, and [`outcome`] the answer.
+//! [`model`] and [`term`] are what can be in a law, [`fit`] the likelihood, [`nominal`] the law of the rig file, [`candidates`],
+//! [`links`] and [`selection`] the choice with its [`criteria`], [`held_out`] and [`interval`] the evidence, [`outside_force`] the
+//! stretches in which something else pushes, and [`outcome`] the answer.
 
 pub mod candidates;
 pub mod criteria;
@@ -26,6 +27,7 @@ pub mod noise;
 pub mod nominal;
 pub mod one_body_filter;
 pub mod outcome;
+pub mod outside_force;
 pub mod prepare;
 pub mod selection;
 pub mod term;

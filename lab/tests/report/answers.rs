@@ -243,7 +243,18 @@ fn nominal(name: &str, unit: &str, given: f64, fitted: f64, half_width: f64) -> 
 
 fn goodness(channel: &'static str, [as_given, refitted, improved, noise_floor]: [f64; 4], share: f64) -> FitQuality {
     let (unit, held_out, band_hz) = ("N", true, 120.0);
-    FitQuality { channel, unit, noise_floor, as_given, refitted, improved, held_out, explained_share: share, band_hz }
+    FitQuality {
+        channel,
+        unit,
+        noise_floor,
+        as_given,
+        refitted,
+        improved,
+        learned: None,
+        held_out,
+        explained_share: share,
+        band_hz,
+    }
 }
 
 fn location(

@@ -1,8 +1,11 @@
 //! When a law counts as told by the recordings. Each number with its meaning and origin.
 
-/// Log likelihood that a larger model has to gain, nats: one in e^10 by chance for one comparison, e^5 for the hundred and fifty that
-/// a search makes.
+/// Log likelihood that a larger model has to gain, nats: one in e^10 by chance for one comparison, e^5 for all [`COMPARISONS`].
 pub const LEAST_GAIN: f64 = 10.0;
+
+/// Comparisons of a larger model with a smaller one that a search makes, rounded up to a number that all recordings share: some fifty
+/// forms of effects in three rounds.
+pub const COMPARISONS: f64 = 150.0;
 
 /// Share of what the smaller model leaves above the sensors' noise.
 pub const LEAST_SHARE: f64 = 0.2;
@@ -20,7 +23,7 @@ pub const FAR_SHARES: [f64; 2] = [0.33, 0.25];
 pub const LEAST_PART_OF_FORCE: f64 = 0.002;
 
 /// Vuong's statistic: 95 % of one side. What shows on a few occasions alone, such as a release, cannot reach more than their root; it is
-/// not asked of what takes [`TOLD_SHARE`] of a mismatch far above the noise, for which nothing else is there.
+/// not asked of what takes [`LEAST_TOLD_SHARE`] of a mismatch far above the noise, for which nothing else is there.
 pub const LEAST_VUONG: f64 = 1.6;
 
 /// Share of the held-out power above the noise that a named effect has to take beside the others: half of what the search asks on its

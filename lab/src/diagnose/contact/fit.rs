@@ -39,8 +39,6 @@ impl Effort {
     pub const QUICK: Self = Self(4);
     /// To the end.
     pub const FULL: Self = Self(30);
-    /// From where a search ended, under weights that differ a little.
-    pub const AGAIN: Self = Self(3);
 }
 
 /// Part of the residual's energy below which a step no longer counts.
@@ -230,7 +228,7 @@ impl<'a> Data<'a> {
     /// `fit` under these weights, its search continued from where it ended.
     #[must_use]
     pub fn again(&self, fit: &Fit) -> Fit {
-        self.fit(&fit.model, &fit.values, Effort::AGAIN)
+        self.fit(&fit.model, &fit.values, Effort::FULL)
     }
 }
 

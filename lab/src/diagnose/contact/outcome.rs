@@ -1,8 +1,8 @@
 //! What the recordings say of a contact: the law, its evidence, what else would do, and what is left.
 
 use super::criteria::{
-    LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, LEAST_VUONG, MOST_LEFT, NOTABLE_POWER,
-    TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
+    COMPARISONS, LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, LEAST_VUONG, MOST_LEFT,
+    NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
 };
 use super::fit::{Data, Effort, Fit, Rest};
 use super::held_out::{Folds, HeldOut, rms};
@@ -107,7 +107,6 @@ pub fn identify(
     let coarse = Data::new(coarse).weighed(&nominal);
     let mut search = Search { data, coarse, nominal };
     let chosen = search.run(say);
-    let chosen = search.weighed_anew(chosen);
     say("the contact: what is left");
     let mut outcome = judged(&search, chosen, &start);
     outcome.weights.clone_from(&search.data.weights);
@@ -189,11 +188,11 @@ fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, 
             fit = without[nth].0.clone();
             continue;
         }
-        let tried = 150.0;
         let named = without.iter().enumerate().map(|(nth, (less, left, without))| NamedTerm {
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
-            p_value: (tried * likelihood_ratio_p(search.worth(&fit, less).gain, added_values(&fit, less))).min(1.0),
+            p_value: (COMPARISONS * likelihood_ratio_p(search.worth(&fit, less).gain, added_values(&fit, less)))
+                .min(1.0),
             without: *without,
         });
         let named = named.collect();

@@ -183,10 +183,12 @@ impl Search<'_> {
                 beam.push(best.clone());
             }
         }
-        sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         say("the contact: without each effect");
         let fit = self.pruned(best);
         let fit = self.exchanged(fit, say);
+        let fit = self.weigh_by(fit);
+        let fit = self.pruned(fit);
+        sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         let fit = self.simplest(fit, &sets);
         Chosen { fit, singles, sets }
     }
@@ -199,14 +201,6 @@ impl Search<'_> {
         self.coarse = self.coarse.weighed(&best);
         self.nominal = self.data.again(&self.nominal);
         self.data.again(&best)
-    }
-
-    /// What was chosen, under the weights of its own.
-    #[must_use]
-    pub fn weighed_anew(&mut self, chosen: Chosen) -> Chosen {
-        let fit = self.weigh_by(chosen.fit);
-        let sets = chosen.sets.par_iter().map(|fit| self.data.again(fit)).collect();
-        Chosen { fit: self.pruned(fit), sets, ..chosen }
     }
 
     /// `base` with each promising effect, and with what each trial may have for itself, the best first.

@@ -96,7 +96,8 @@ fn starts(base: &Fit, sides: &[Side]) -> Vec<Fit> {
 }
 
 /// The stretch of a trial in which the disturbance is largest.
-fn liveliest(data: &Data<'_>, disturbance: &[Vec<f64>]) -> DriveTrial {
+#[must_use]
+pub fn liveliest(data: &Data<'_>, disturbance: &[Vec<f64>]) -> DriveTrial {
     let mut best = (f64::NEG_INFINITY, 0, 0..0);
     for (at, (trial, force)) in data.trials.iter().zip(disturbance).enumerate() {
         let rows = trial.len().min(STRETCH_ROWS);

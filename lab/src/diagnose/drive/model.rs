@@ -70,6 +70,12 @@ impl Model {
         law
     }
 
+    /// Whether the inertia lies within what is believed of it: at an end it stands for something else.
+    #[must_use]
+    pub fn has_believed_inertia(&self, values: &[f64]) -> bool {
+        !self.ranges()[index::INERTIA].is_at_end(values[index::INERTIA])
+    }
+
     /// Whether a telling value of a term ended where its search did.
     #[must_use]
     pub fn is_at_end(&self, values: &[f64]) -> bool {

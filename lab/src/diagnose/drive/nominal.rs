@@ -5,7 +5,7 @@ use super::held_out::{missing_force, rms};
 use super::law::Side;
 use super::model::{Model, index};
 use super::named::known;
-use super::noise::{Noise, white_variance};
+use super::noise::Noise;
 use super::term::{Scales, Term};
 use super::trial::DriveTrial;
 use crate::effects::Resolved;
@@ -107,7 +107,7 @@ fn deviation(values: &[f64]) -> f64 {
 /// Variance of the encoder, m^2 or rad^2: that of the quietest trial, and no less than a third of what rounding to the encoder's step leaves.
 #[must_use]
 pub fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
-    let white = trials.iter().map(|trial| white_variance(&trial.position)).fold(f64::INFINITY, f64::min);
+    let white = trials.iter().map(DriveTrial::encoder_variance).fold(f64::INFINITY, f64::min);
     white.max(0.3 * scales.resolution.powi(2) / 12.0)
 }
 

@@ -12,7 +12,8 @@ use super::interval::intervals;
 use super::law::{DriveLaw, Side};
 use super::model::index;
 use super::noise::{Noise, white_variance};
-use super::nominal::{LOWEST_BAND_HZ, NominalDrive, encoder_variance, nominal_fit, scales};
+use super::nominal::{LOWEST_BAND_HZ, NominalDrive, encoder_variance, missing_under, nominal_fit, scales};
+use super::outside_force::{Stretch, outside_forces};
 use super::selection::{Chosen, Search};
 use super::term::Term;
 use super::trial::DriveTrial;
@@ -55,6 +56,8 @@ pub struct Outcome {
     pub expected_noise: f64,
     /// Up to which frequency the missing force is seen, Hz.
     pub band_hz: f64,
+    /// Stretches in which something from outside pushes, left out of everything else.
+    pub outside_forces: Vec<Stretch>,
 }
 
 impl Outcome {
@@ -68,9 +71,34 @@ impl Outcome {
     }
 }
 
-/// Identifies the drive of `trials`; `None` where they show no motion or are too short.
+/// Identifies the drive of `trials`; `None` where they show no motion or are too short. Where no law does and a force from outside comes
+/// and goes, the law of the rest is looked for.
 #[must_use]
 pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
+    let first = identify_as_they_are(trials, rig, seed, say)?;
+    if !matches!(first.verdict, Verdict::Unknown | Verdict::PartlyExplained) {
+        return Some(first);
+    }
+    let law = DriveLaw::nominal(rig.inertia, rig.viscous, first.chosen.values[index::DELAY]);
+    let missing = missing_under(&first.trials, rig)?;
+    let stretches = outside_forces(&first.trials, &missing, &law, &first.chosen.model.scales);
+    if stretches.is_empty() {
+        return Some(first);
+    }
+    say("the drive: without the stretches in which something else pushes");
+    let quiet = first.trials.iter().enumerate().map(|(number, trial)| {
+        let own = stretches.iter().filter(|stretch| stretch.trial == number);
+        trial.without(&own.map(|stretch| [stretch.start_s, stretch.end_s]).collect::<Vec<_>>())
+    });
+    match identify_as_they_are(quiet.collect(), rig, seed, say) {
+        Some(second) if !second.named.is_empty() => {
+            Some(Outcome { verdict: Verdict::PartlyExplained, outside_forces: stretches, ..second })
+        }
+        _ => Some(first),
+    }
+}
+
+fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
     let scales = scales(&trials, rig)?;
     let encoder_variance = encoder_variance(&trials, &scales);
     let data = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
@@ -83,11 +111,11 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
     let chosen = search.run(say);
     say("the drive: what is left");
     let mut outcome = judged(&search, chosen, seed);
-    outcome.trials = trials.clone();
+    outcome.trials.clone_from(&trials);
     Some(outcome)
 }
 
-/// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.
+/// Share of the held-out density that a named term has to take, beside the others: half of what the search asks on its own rows.
 const LEAST_HELD_OUT_SHARE: f64 = 0.12;
 
 fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
@@ -116,6 +144,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         expected_noise,
         band_hz: search.band_hz,
         nominal: search.nominal.clone(),
+        outside_forces: Vec::new(),
         chosen: fit,
     }
 }
@@ -132,31 +161,30 @@ fn as_given(search: &Search<'_>) -> Fit {
 fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
     loop {
         let held = folds.held_out(&search.data, &fit, common);
-        let with = rms(&held.missing);
         let first = search.nominal.model.terms.len();
-        let without: Vec<(Fit, f64)> = (first..fit.model.terms.len())
+        let without: Vec<(Fit, HeldOut)> = (first..fit.model.terms.len())
             .map(|at| {
                 let less = without(search, &fit, at);
-                let left = rms(&folds.held_out(&search.data, &less, common).missing);
+                let left = folds.held_out(&search.data, &less, common);
                 (less, left)
             })
             .collect();
-        let share = |left: f64| 1.0 - (with / left.max(f64::MIN_POSITIVE)).powi(2);
+        let share = |left: &HeldOut| 1.0 - held.density / left.density.max(f64::MIN_POSITIVE);
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
         let carries =
             |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
         let needless = (0..without.len())
-            .filter(|nth| share(without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
-        if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
+            .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
+        if let Some(nth) = needless.min_by(|a, b| without[*a].1.density.total_cmp(&without[*b].1.density)) {
             fit = without[nth].0.clone();
             continue;
         }
         let tried = 15.0;
         let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
             at: first + nth,
-            held_out_share: share(*left).clamp(0.0, 1.0),
+            held_out_share: share(left).clamp(0.0, 1.0),
             p_value: (tried * p_value(&fit, less)).min(1.0),
-            without: *left,
+            without: rms(&left.missing),
         });
         let named = named.collect();
         return (fit, held, named);
@@ -275,7 +303,10 @@ fn expected_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> 
         .iter()
         .map(|trial| {
             let mut noise = trial.clone();
-            noise.position = drawn(fit.noise.encoder().sqrt(), trial.len());
+            noise.position = match rounding(trial, fit, search.scales.resolution) {
+                Some(rounding) => rounding,
+                None => drawn(fit.noise.encoder().sqrt(), trial.len()),
+            };
             noise.effort.fill(0.0);
             if let Some(force) = &mut noise.force {
                 *force = drawn(white_variance(force).sqrt(), force.len());
@@ -284,6 +315,22 @@ fn expected_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> 
         })
         .collect();
     rms(&columns)
+}
+
+/// Share of the encoder's variance from which it is rounding to its step.
+const ROUNDING_SHARE: f64 = 0.5;
+
+/// What rounding to the encoder's step makes of the motion that `fit` follows: no white noise, and none at rest. `None` where the
+/// encoder is noisier than that.
+fn rounding(trial: &DriveTrial, fit: &Fit, step: f64) -> Option<Vec<f64>> {
+    if step * step / 12.0 < ROUNDING_SHARE * fit.noise.encoder() {
+        return None;
+    }
+    let pass = innovations(trial, &fit.model.law(&fit.values), &fit.noise, false);
+    // Filtered position: the reading less what of the innovation the gain left.
+    let kept = |row: usize| fit.noise.encoder() / pass.variance[row];
+    let followed = (0..trial.len()).map(|row| trial.position[row] - kept(row) * pass.innovation[row]);
+    Some(followed.map(|position| (position / step).round() * step - position).collect())
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use super::candidates::{one_body, simpler, tried};
 use super::criteria::{
-    BLOCK_ROWS, BLOCK_S, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_EFFORT, LEAST_RIPPLE_PART,
-    LEAST_SHARE, LEAST_VUONG, LINK_PART, NEGLIGIBLE_PART,
+    BLOCK_ROWS, BLOCK_S, LEAST_FREE_SHAPE_PART, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL,
+    LEAST_PART_OF_EFFORT, LEAST_SHARE, LEAST_VUONG, LINK_PART, NEGLIGIBLE_PART,
 };
 use super::filter::innovations;
 use super::fit::{Data, Effort, Fit, fit};
@@ -91,8 +91,8 @@ impl Search<'_> {
     #[must_use]
     pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
         let values = more.values.len().saturating_sub(less.values.len()).max(1);
-        let ripples = |fit: &Fit| fit.model.terms.iter().filter(|term| **term == Term::Cogging).count();
-        let least_part = if ripples(more) > ripples(less) { LEAST_RIPPLE_PART } else { LEAST_PART_OF_ALL };
+        let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape()).count();
+        let least_part = if shapes(more) > shapes(less) { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
         worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
             && worth.share > LEAST_SHARE
@@ -120,8 +120,7 @@ impl Search<'_> {
             say(&format!("the drive: {} terms and one more", round));
             let mut grown: Vec<Fit> = Vec::new();
             for base in &beam {
-                let candidates = one_body(&self.data, base, &self.disturbance(base));
-                let mut quick = tried(&self.data, base, candidates);
+                let mut quick = self.quickly_grown(base);
                 if round == 0 {
                     singles.clone_from(&quick);
                 }
@@ -150,8 +149,30 @@ impl Search<'_> {
             }
         }
         say("the drive: without each term");
-        let fit = self.pruned(best);
+        let fit = self.with_believed_inertia(self.pruned(best), &sets);
         Chosen { fit, singles, sets: distinct_all(sets) }
+    }
+
+    /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
+    fn quickly_grown(&self, base: &Fit) -> Vec<Fit> {
+        let disturbance = self.disturbance(base);
+        let candidates = one_body(&self.data, base, &disturbance);
+        if base.model.terms.iter().any(Term::is_link) {
+            let trials = [links::liveliest(&self.data, &disturbance)];
+            return tried(&Data { trials: &trials, ..self.data }, base, candidates);
+        }
+        tried(&self.data, base, candidates)
+    }
+
+    /// `best`, or the likeliest of `sets` that is worth its terms where the inertia of `best` is not believed; else no term.
+    fn with_believed_inertia(&self, best: Fit, sets: &[Fit]) -> Fit {
+        let is_believed = |fit: &Fit| fit.model.has_believed_inertia(&fit.values);
+        if best.model == self.nominal.model || is_believed(&best) {
+            return best;
+        }
+        let others = sets.iter().filter(|fit| is_believed(fit) && self.is_worth(fit, &self.nominal));
+        let likeliest = others.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
+        likeliest.map_or_else(|| self.nominal.clone(), |fit| self.pruned(fit.clone()))
     }
 
     /// `start` fitted in full.

@@ -153,6 +153,9 @@ const LOAD_SHARES: (f64, f64) = (0.2, 0.97);
 /// A link's own swing, under all of the inertia, that a recording can show: from this many a trial, rad.
 const SLOWEST_SWING: f64 = 30.0;
 
+/// Longest pitch of a ripple that turns: two a turn.
+const LONGEST_PITCH_RAD: f64 = std::f64::consts::PI;
+
 impl Term {
     /// Name of the effect, as the contract has it.
     #[must_use]
@@ -216,7 +219,9 @@ impl Term {
             Self::AngleLoad => vec![any, any, Range::relative(0.5 / scales.travel, 12.0 / scales.travel)],
             Self::Cogging => {
                 let finest = (2.0 * scales.resolution).max(1e-5 * scales.travel);
-                vec![any, any, Range::relative(wavenumber(0.5 * scales.travel), wavenumber(finest))]
+                // Once a turn is a load by angle, whatever it comes from.
+                let turn = if scales.is_rotary { LONGEST_PITCH_RAD } else { f64::INFINITY };
+                vec![any, any, Range::relative(wavenumber((0.5 * scales.travel).min(turn)), wavenumber(finest))]
             }
             Self::EffortLimit => {
                 vec![Range::absolute(0.2 * scales.effort, scales.peak_effort, 0.02 * scales.effort)]
@@ -248,6 +253,12 @@ impl Term {
         };
         let ranges = self.ranges(scales);
         telling.iter().any(|at| ranges[*at].is_at_end(values[*at]))
+    }
+
+    /// Whether a value of it sets its shape, beside its size.
+    #[must_use]
+    pub const fn has_free_shape(&self) -> bool {
+        matches!(self, Self::Cogging | Self::Sublinear)
     }
 
     /// Puts it into `law` with `values`.

@@ -1,5 +1,7 @@
 //! A recording as the drive's model sees it: encoder rows, and the signals that act between them.
 
+use super::noise::white_variance;
+
 /// One trial. Encoder rows may be fewer than the recorded ones; effort and force keep every recorded row.
 #[derive(Debug, Clone)]
 pub struct DriveTrial {
@@ -81,6 +83,35 @@ impl DriveTrial {
         }
     }
 
+    /// The same without the encoder rows from `start_s` to `end_s` of each of `spans`.
+    #[must_use]
+    pub fn without(&self, spans: &[[f64; 2]]) -> Self {
+        let is_kept =
+            |row: &usize| !spans.iter().any(|[start_s, end_s]| (*start_s..=*end_s).contains(&self.time[*row]));
+        let rows: Vec<usize> = (0..self.len()).filter(is_kept).collect();
+        let follows = |at: usize| at > 0 && rows[at] == rows[at - 1] + 1;
+        Self {
+            time: rows.iter().map(|row| self.time[*row]).collect(),
+            position: rows.iter().map(|row| self.position[*row]).collect(),
+            restart: (0..rows.len()).map(|at| !follows(at) || self.restart[rows[at]]).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Variance of the white noise in the encoder's rows, no stretch held against the next, m^2 or rad^2.
+    #[must_use]
+    pub fn encoder_variance(&self) -> f64 {
+        let starts: Vec<usize> = (0..self.len()).filter(|row| self.restart[*row]).chain([self.len()]).collect();
+        let of_stretch = |ends: &[usize]| {
+            let rows = &self.position[ends[0]..ends[1]];
+            let weight = rows.len().saturating_sub(6) as f64;
+            (weight * white_variance(rows), weight)
+        };
+        let (sum, weight) =
+            starts.windows(2).map(of_stretch).fold((0.0, 0.0), |all, own| (all.0 + own.0, all.1 + own.1));
+        sum / weight.max(1.0)
+    }
+
     /// Mean speed from row `row` to the next, where there is one.
     #[must_use]
     pub fn rate_after(&self, row: usize) -> f64 {
@@ -111,4 +142,22 @@ fn median(mut all: Vec<f64>) -> f64 {
     }
     let middle = all.len() / 2;
     *all.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cut_is_no_noise_of_the_encoder_and_starts_a_stretch() {
+        let time: Vec<f64> = (0..400).map(|row| f64::from(row) * 1e-3).collect();
+        let position: Vec<f64> = time.iter().map(|t| 3.0 * t * t).collect();
+        let trial = DriveTrial::new("cut.csv".to_owned(), time.clone(), &position, time.clone(), None, 1);
+        let cut = trial.without(&[[0.1, 0.2], [0.3, 0.3005]]);
+        // Rows 100 to 200, and row 300.
+        assert_eq!((cut.len(), cut.time[100], cut.time[199]), (298, 0.201, 0.301));
+        assert_eq!((0..cut.len()).filter(|row| cut.restart[*row]).collect::<Vec<_>>(), [0, 100, 199]);
+        assert!(cut.encoder_variance() < 1e-20 && white_variance(&cut.position) > 1e-6);
+        assert_eq!(cut.source_time, time);
+    }
 }

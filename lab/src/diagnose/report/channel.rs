@@ -47,6 +47,7 @@ impl Residuals {
             as_given,
             refitted,
             improved,
+            learned: None,
             held_out: true,
             explained_share: self.share_taken(improved),
             band_hz,

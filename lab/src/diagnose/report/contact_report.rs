@@ -3,7 +3,7 @@
 use super::channel::{self, Residuals};
 use super::contact_plot;
 use super::contact_residual::contact_residual;
-use super::diagnosis::{Diagnosis, Evidence, Finding, Location, Nominal, Physics, PlotData};
+use super::diagnosis::{Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
 use super::summary;
 use crate::diagnose::contact::fit::Data;
 use crate::diagnose::contact::held_out::rms;
@@ -30,7 +30,9 @@ pub const CHANNEL: &str = "force";
 pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
     let residuals = residuals(outcome);
-    let fit = residuals.quality(CHANNEL, coordinate.force_unit(), 0.5 / outcome.nominal.model.scales.step_s);
+    let band_hz = 0.5 / outcome.nominal.model.scales.step_s;
+    let learned = outcome.learned.as_ref().map(|curve| rms(&data(outcome), &curve.residual));
+    let fit = FitQuality { learned, ..residuals.quality(CHANNEL, coordinate.force_unit(), band_hz) };
     let residual = contact_residual(outcome, coordinate);
     let is_good = outcome.verdict == Verdict::NoMismatch;
     let locations = if is_good { Vec::new() } else { residual.locations() };

@@ -127,6 +127,9 @@ pub struct FitQuality {
     pub refitted: f64,
     /// With the named physics.
     pub improved: f64,
+    /// With the named physics and what was learned beside it; left out where nothing was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub learned: Option<f64>,
     /// Always true: nothing is quoted that was fitted.
     pub held_out: bool,
     /// Share of the energy above the expected noise, that refitted values leave, which the named physics takes away.

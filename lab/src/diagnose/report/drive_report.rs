@@ -1,7 +1,7 @@
 //! The diagnosis of the drive's channel, from what was identified of it.
 
 use super::channel::{self, Residuals};
-use super::diagnosis::{Diagnosis, Evidence, Location, Nominal, Phase, Physics, PlotData};
+use super::diagnosis::{Diagnosis, Evidence, Finding, Location, Nominal, Phase, Physics, PlotData};
 use super::drive_plot;
 use super::drive_residual::drive_residual;
 use super::summary;
@@ -10,6 +10,7 @@ use crate::diagnose::drive::held_out::rms;
 use crate::diagnose::drive::model::index;
 use crate::diagnose::drive::named::{NamedEffect, named};
 use crate::diagnose::drive::outcome::Outcome;
+use crate::diagnose::drive::outside_force::Stretch;
 use crate::diagnose::drive::term::Term;
 use crate::diagnose::verdict::Verdict;
 use crate::effects::{self, Place, slug};
@@ -80,7 +81,7 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig, touched: Option<&Touched>) -> 
             .filter(|spec| spec.place == Place::Drive)
             .map(|spec| spec.name)
             .collect(),
-        findings: Vec::new(),
+        findings: outside_forces(outcome),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
     let first_effect = diagnosis.physics.first().map(|physics| physics.name.as_str());
@@ -99,6 +100,24 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig, touched: Option<&Touched>) -> 
 
 /// Advice where the list knows no experiment for a pair.
 const OTHERWISE: &str = "A longer recording over more of the travel and at more speeds.";
+
+/// Stretches in which something else pushes.
+fn outside_forces(outcome: &Outcome) -> Vec<Finding> {
+    let told = |stretch: &Stretch| {
+        let trial = &outcome.trials[stretch.trial];
+        let [from, to] = [stretch.start_s, stretch.end_s].map(|time| time - trial.source_time[0]);
+        Finding {
+            code: "outside_force",
+            grave: false,
+            place: trial.name.clone(),
+            text: format!(
+                "From {from:.1} to {to:.1} s a force acts that no law of a drive makes and that is not there at other times, as a hand \
+                 or a stop: what lies there is left out of everything else."
+            ),
+        }
+    };
+    outcome.outside_forces.iter().map(told).collect()
+}
 
 fn residuals(outcome: &Outcome) -> Residuals {
     let of_laws = [0, 1, 2].map(|of| rms(&outcome.missing[of]));

@@ -48,10 +48,16 @@ static SPEC: EffectSpec = EffectSpec {
                 Parameter::new("spread", Word::same("1"), "of the yields, in equal ratios", 1.0, 30.0),
             ],
         },
+        // At one speed this is the force of a Maxwell branch: what tells the two apart is another speed, or a hold.
+        Form {
+            name: "dahl",
+            equation: "F = K x + B v + loop_force z, dz = (1 - z sign(dx)) dx / yield_depth",
+            parameters: &[LOOP_FORCE, YIELD_DEPTH],
+        },
     ],
     excited_by: "reversals at two or more speeds in contact, slow ones above all",
     resembles: &["plastic_set", "lost_motion", "quadratic_damping", "stress_relaxation"],
-    source: "L. Prandtl (1928), W. D. Iwan, J. Appl. Mech. 33 (1966) 893: elastic slip, alone and in a bundle; R. Bouc (1967), Y.-K. Wen, J. Eng. Mech. Div. 102 (1976) 249",
+    source: "L. Prandtl (1928), W. D. Iwan, J. Appl. Mech. 33 (1966) 893: elastic slip, alone and in a bundle; P. R. Dahl, AIAA J. 14 (1976) 1675; R. Bouc (1967), Y.-K. Wen, J. Eng. Mech. Div. 102 (1976) 249",
 };
 
 impl Effect for Hysteresis {
@@ -65,7 +71,7 @@ impl Effect for Hysteresis {
         }
         let size = 0.05 * scene.stiffness * scene.depth;
         let travels = geometric(0.01 * scene.depth, 1.0 * scene.depth, 7);
-        let third = [None, Some(1.0), Some(3.0)][form];
+        let third = [None, Some(1.0), Some(3.0), None][form];
         let start = |travel: &f64| {
             let values: Vec<f64> = [size, *travel].into_iter().chain(third).collect();
             Start::sized(&values, &[0])
@@ -90,6 +96,10 @@ impl Effect for Hysteresis {
             }
             1 => {
                 state[1] = bouc_wen(state[1], moved / travel, values[2]);
+                state[1]
+            }
+            3 => {
+                state[1] = dahl(state[1], moved / travel);
                 state[1]
             }
             _ => {
@@ -121,8 +131,35 @@ fn bouc_wen(mut strain: f64, moved: f64, sharpness: f64) -> f64 {
     strain
 }
 
+/// Strain after a way of `moved` yield depths in one direction, exactly.
+fn dahl(strain: f64, moved: f64) -> f64 {
+    let end = moved.signum();
+    end + (strain - end) * (-moved.abs()).exp()
+}
+
 /// Yield depths beyond which nothing of the state before is left.
 const SATURATION_YIELDS: f64 = 12.0;
 
 /// Yield depths of one step of the integration.
 const YIELDS_PER_STEP: f64 = 0.2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dahls_loop_turns_as_its_solution_says_however_it_is_stepped() {
+        // In from rest: z = 1 - e^-x; back from z0: z = -1 + (z0 + 1) e^-x.
+        let (mut fine, mut coarse) = (0.0, 0.0);
+        for _ in 0..300 {
+            fine = dahl(fine, 0.01);
+        }
+        for _ in 0..3 {
+            coarse = dahl(coarse, 1.0);
+        }
+        let there = 1.0 - (-3.0f64).exp();
+        assert!((fine - there).abs() < 1e-12 && (coarse - there).abs() < 1e-12, "{fine} {coarse} {there}");
+        let back = dahl(coarse, -0.5);
+        assert!((back - (-1.0 + (there + 1.0) * (-0.5f64).exp())).abs() < 1e-12, "{back}");
+    }
+}

@@ -9,10 +9,10 @@ use crate::rig::Word;
 pub struct Learned;
 
 /// Knots of each curve.
-pub const KNOTS: usize = 12;
+pub const LEARNED_KNOTS: usize = 12;
 
 /// Values before those of the mean: the travel of a turn, and where each knot lies.
-pub const BEFORE_KNOTS: usize = 1 + KNOTS;
+pub const BEFORE_KNOTS: usize = 1 + LEARNED_KNOTS;
 
 const fn force(name: &'static str, meaning: &'static str) -> Parameter {
     Parameter::new(name, Word::new("N", "N m"), meaning, f64::NEG_INFINITY, f64::INFINITY)
@@ -103,7 +103,7 @@ impl Effect for Learned {
         state[1] = (state[1] + moved / values[0].max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
         state[2] = 1.0;
         let places = &values[1..BEFORE_KNOTS];
-        let (mean, half) = values[BEFORE_KNOTS..].split_at(KNOTS);
+        let (mean, half) = values[BEFORE_KNOTS..].split_at(LEARNED_KNOTS);
         let x = touch.position;
         touch.force += curve(places, mean, x) + state[1] * curve(places, half, x);
     }
@@ -129,8 +129,8 @@ mod tests {
 
     #[test]
     fn the_curve_goes_through_its_knots_and_is_level_beyond_them() {
-        let places: Vec<f64> = (0..KNOTS).map(|knot| (knot as f64).powi(2)).collect();
-        let knots: Vec<f64> = (0..KNOTS).map(|knot| (knot as f64).powi(3)).collect();
+        let places: Vec<f64> = (0..LEARNED_KNOTS).map(|knot| (knot as f64).powi(2)).collect();
+        let knots: Vec<f64> = (0..LEARNED_KNOTS).map(|knot| (knot as f64).powi(3)).collect();
         for (place, force) in places.iter().zip(&knots) {
             assert!((curve(&places, &knots, *place) - force).abs() < 1e-9);
         }
