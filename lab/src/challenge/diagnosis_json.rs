@@ -72,6 +72,9 @@ pub struct FitJson {
     pub refitted: Option<f64>,
     /// With the named physics.
     pub improved: Option<f64>,
+    /// With what was learned beside it, where something was.
+    #[serde(default)]
+    pub learned: Option<f64>,
 }
 
 impl DiagnosisJson {

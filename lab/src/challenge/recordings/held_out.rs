@@ -1,33 +1,32 @@
-//! What a model leaves of trials that it never saw, every value of it frozen.
+//! What a model leaves of trials that it never saw, every value of it frozen but those that belong to a trial.
 //!
-//! Where the surface lies is a matter of each trial (a sample is put on anew, a piston's pressure is set anew), not of the
-//! physics: this one number is placed by least squares over the beginning of the trial, which is not scored. Nothing is
-//! fitted to the rest, of which the root mean square is the score. Both models get the same treatment.
+//! Where the surface lies and what the sensor reads without a force are a matter of each trial (a sample is put on anew, a piston's
+//! pressure is set anew), and so is how stiff the body is where another piece or another spot of it was touched. These two or three
+//! numbers are placed by least squares over the trial, as a diagnosis places them; nothing else is fitted, of the nominal law as of
+//! the improved one.
 
 use anyhow::{Context as _, Result};
 
-use crate::diagnose::contact::fit::{Data, Effort};
+use crate::diagnose::contact::fit::Data;
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::nominal::{law_of, nominal_fit};
 use crate::diagnose::contact::prepare;
 use crate::diagnose::contact::trial::ContactTrial;
+use crate::diagnose::linalg::energy;
 use crate::diagnose::{drive, sensed};
 use crate::effects;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
 
-/// Share of a trial that places its surface.
-const BEGINNING: f64 = 0.1;
-
-/// The same where the tool is clamped: one of some five strokes, there and back.
-const BEGINNING_CLAMPED: f64 = 0.2;
-
-/// Share of its way that the force has to have gone by then, or there is no touch to place a surface by.
-const TOUCHED: f64 = 0.2;
-
-/// Surfaces that a placement starts from beside that of the rig, of the way from the least position to the greatest.
-const STARTS: [f64; 4] = [0.1, 0.35, 0.6, 0.85];
+/// What belongs to a trial, and not to the physics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OwnToTrial {
+    /// The contact point and the zero of the force.
+    Place,
+    /// And a factor of the force: another piece or spot of the body.
+    PlaceAndScale,
+}
 
 /// The nominal law of `rig` with the values that `trials` teach: least squares, no effect added.
 ///
@@ -56,15 +55,20 @@ fn contact_trials(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<[Vec<
     Ok(prepare::trials(trials, &figures))
 }
 
-/// Root mean squares over the scored rows of `trials` that `models` leave.
+/// Root mean squares over `trials` that `models` leave.
 ///
 /// # Errors
 /// A trial that the rig does not predict, effects that cannot be, or no row to score.
-pub fn left<const N: usize>(models: [&Rig; N], origin: &str, trials: &[Recording]) -> Result<[f64; N]> {
+pub fn left<const N: usize>(
+    models: [&Rig; N],
+    origin: &str,
+    trials: &[Recording],
+    own: OwnToTrial,
+) -> Result<[f64; N]> {
     let (mut sums, mut rows) = ([0.0; N], 0usize);
     for trial in trials {
         for (at, model) in models.iter().enumerate() {
-            let scored = scored(model, origin, trial)?;
+            let scored = residual(model, origin, trial, own)?;
             sums[at] += scored.iter().map(|value| value * value).sum::<f64>();
             rows += if at == 0 { scored.len() } else { 0 };
         }
@@ -73,43 +77,71 @@ pub fn left<const N: usize>(models: [&Rig; N], origin: &str, trials: &[Recording
     Ok(sums.map(|sum| (sum / rows as f64).sqrt()))
 }
 
-/// Residuals of `rig` on the scored rows of one trial.
-fn scored(rig: &Rig, origin: &str, trial: &Recording) -> Result<Vec<f64>> {
-    let own = std::slice::from_ref(trial);
+/// Residuals of `rig` on the rows of one trial, what belongs to the trial placed.
+fn residual(rig: &Rig, origin: &str, trial: &Recording, own: OwnToTrial) -> Result<Vec<f64>> {
+    let alone = std::slice::from_ref(trial);
     let known = effects::resolve_all(rig, origin)?;
-    if !prepare::is_recorded(rig, own) {
-        let nominal = drive::prepare::nominal(rig, own, known).context("neither a contact nor a drive")?;
-        let missing = drive::nominal::missing_under(&drive::prepare::trials(rig, own), &nominal);
+    if !prepare::is_recorded(rig, alone) {
+        let nominal = drive::prepare::nominal(rig, alone, known).context("neither a contact nor a drive")?;
+        let missing = drive::nominal::missing_under(&drive::prepare::trials(rig, alone), &nominal);
         return Ok(missing.context("a trial in which nothing moves")?.concat());
     }
     let nominal = prepare::nominal(rig, known).context("a rig without a contact")?;
-    let [fine, _] = contact_trials(rig, origin, own)?;
+    let [fine, _] = contact_trials(rig, origin, alone)?;
     let (model, given) = law_of(&fine, &nominal);
-    let end = beginning(&fine[0], model.bilateral);
-    // The surface alone is placed, by the beginning alone.
-    let mut first = Data::new(&fine);
-    first.weights[0][end..].fill(0.0);
     let [low, high] = model.scales.positions;
-    let starts = STARTS.iter().filter(|_| !model.bilateral).map(|part| low + part * (high - low));
-    let placed = std::iter::once(given[index::SURFACE]).chain(starts).map(|surface| {
-        let mut start = given.clone();
-        start[index::SURFACE] = surface;
-        first.fit_holding(&model, &start, Effort::FULL, &|at| at != index::SURFACE)
-    });
-    let placed = placed.min_by(|a, b| a.energy.total_cmp(&b.energy)).context("no place to start from")?;
-    let rest = first.residual(&model, &placed.values, 0);
-    let counts = rest.iter().zip(&fine[0].counts).skip(end);
-    Ok(counts.filter(|(_, counts)| **counts).map(|(value, _)| *value).collect())
+    let [from, to] = if model.bilateral {
+        [given[index::SURFACE] - (high - low), given[index::SURFACE] + (high - low)]
+    } else {
+        [low, high]
+    };
+    let placed = |surface: f64| {
+        let mut values = given.clone();
+        values[index::SURFACE] = surface;
+        placed_residual(&fine[0], &model.predicted(&values, &fine[0], 0), own)
+    };
+    let step = (to - from) / PLACES as f64;
+    let places = (0..=PLACES).map(|at| from + at as f64 * step).chain([given[index::SURFACE]]);
+    let cost = |surface: f64| energy(&placed(surface));
+    let nearest = places.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).context("no place to start from")?;
+    Ok(placed(least_between(nearest - step, nearest + step, cost)))
 }
 
-/// The row at which the beginning ends.
-fn beginning(trial: &ContactTrial, is_clamped: bool) -> usize {
-    let share = if is_clamped { BEGINNING_CLAMPED } else { BEGINNING };
-    let gone: Vec<f64> = trial.force.iter().map(|value| (value - trial.force[0]).abs()).collect();
-    let most = gone.iter().fold(0.0, |most: f64, gone| most.max(*gone));
-    let touched = gone.iter().position(|gone| *gone >= TOUCHED * most).unwrap_or(0);
-    touched.max((share * trial.len() as f64) as usize)
+/// Places of the surface that are compared over the way.
+const PLACES: usize = 60;
+
+/// The least of `cost` between two ends, by golden section.
+fn least_between(mut low: f64, mut high: f64, cost: impl Fn(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.618_034;
+    const STEPS: usize = 40;
+    for _ in 0..STEPS {
+        let [left, right] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+        if cost(left) < cost(right) { high = right } else { low = left }
+    }
+    0.5 * (low + high)
 }
+
+/// Measured less `predicted` force on the rows that count, with the zero of the force, and where it is the trial's own the scale, at
+/// their best.
+fn placed_residual(trial: &ContactTrial, predicted: &[f64], own: OwnToTrial) -> Vec<f64> {
+    let rows =
+        || trial.force.iter().zip(predicted).zip(&trial.counts).filter(|(_, counts)| **counts).map(|(pair, _)| pair);
+    let count = rows().count().max(1) as f64;
+    let [force, law] =
+        [rows().map(|(force, _)| force).sum::<f64>() / count, rows().map(|(_, law)| law).sum::<f64>() / count];
+    let product = |of: &dyn Fn(f64, f64) -> f64| rows().map(|(y, p)| of(y - force, p - law)).sum::<f64>();
+    let scale = match own {
+        OwnToTrial::Place => 1.0,
+        OwnToTrial::PlaceAndScale => {
+            let best = product(&|y, p| y * p) / product(&|_, p| p * p).max(f64::MIN_POSITIVE);
+            best.clamp(MOST_SCALE.recip(), MOST_SCALE)
+        }
+    };
+    rows().map(|(y, p)| y - force - scale * (p - law)).collect()
+}
+
+/// Factor in stiffness between two pieces, or two spots, of one body.
+const MOST_SCALE: f64 = 3.0;
 
 #[cfg(test)]
 mod tests {
@@ -141,15 +173,20 @@ mod tests {
     #[test]
     fn the_surface_is_placed_and_the_stiffness_is_not() {
         let trial = press(600.0, 0.003);
-        let [right, stiff] = left([&rig(600.0), &rig(660.0)], "rig", std::slice::from_ref(&trial)).unwrap();
+        let [right, stiff] =
+            left([&rig(600.0), &rig(660.0)], "rig", std::slice::from_ref(&trial), OwnToTrial::Place).unwrap();
         // Force is 1.6 N RMS in contact, two thirds of the time. The smoothed corner at the touch is left, in
-        // thousandths of it; a tenth of the stiffness is a tenth of the force, of which a surface placed too deep takes a part.
+        // thousandths of it; a tenth of the stiffness is a tenth of the force, of which surface and zero take a part.
         assert!(right < 0.02, "{right}");
         assert!((0.04..0.2).contains(&stiff), "{stiff}");
+        // Another spot of the body: the factor is the trial's, and the law right.
+        let [_, scaled] =
+            left([&rig(600.0), &rig(660.0)], "rig", std::slice::from_ref(&trial), OwnToTrial::PlaceAndScale).unwrap();
+        assert!(scaled < 0.03, "{scaled}: the damper alone is a tenth too strong");
         // A stiffness that had been fitted would leave as little as the right one.
         let refitted = refitted(&rig(660.0), "rig", std::slice::from_ref(&trial)).unwrap();
         assert!((refitted.contact.unwrap().stiffness / 600.0 - 1.0).abs() < 0.01, "{refitted:?}");
-        let [again, _] = left([&refitted, &rig(600.0)], "rig", &[trial]).unwrap();
+        let [again, _] = left([&refitted, &rig(600.0)], "rig", &[trial], OwnToTrial::Place).unwrap();
         assert!(again < 0.02, "{again}");
     }
 }

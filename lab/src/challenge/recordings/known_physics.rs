@@ -1,5 +1,7 @@
 //! What is known of the recordings by those who made them: the concealed answers.
 
+use super::held_out::OwnToTrial;
+
 /// How the recordings of a set become specimens, and which of their rows no diagnosis sees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Split {
@@ -22,6 +24,8 @@ pub struct RecordingSet {
     pub files: &'static [&'static str],
     /// What is shown to the diagnosis of it.
     pub split: Split,
+    /// What belongs to each trial: pieces and spots differ where a README says so.
+    pub own_to_trial: OwnToTrial,
     /// Effects of the list that the README states.
     pub stated: &'static [&'static str],
     /// Names that its words allow as well: what it states may be called so, or these data do not refute it.
@@ -42,6 +46,7 @@ const ARM: RecordingSet = RecordingSet {
     rig: "dfki_pendulum",
     files: &[],
     split: Split::Strokes,
+    own_to_trial: OwnToTrial::Place,
     stated: &["gravity_load", "coulomb_friction"],
     allowed: &[],
     has_unlisted_physics: false,
@@ -53,6 +58,7 @@ const SWITCH: RecordingSet = RecordingSet {
     rig: "keyswitch",
     files: &[],
     split: ONE_PRESS,
+    own_to_trial: OwnToTrial::Place,
     stated: &["layered_stiffness", "hysteresis", "lost_motion"],
     allowed: &["force_bias", "nonlinear_stiffness"],
     has_unlisted_physics: true,
@@ -64,6 +70,7 @@ const DIAMOND: RecordingSet = RecordingSet {
     rig: "nanoindenter",
     files: &[],
     split: Split::Trials("fused_silica_cycles"),
+    own_to_trial: OwnToTrial::Place,
     stated: &["plastic_set", "nonlinear_stiffness", "stress_relaxation"],
     allowed: &["surface_motion"],
     has_unlisted_physics: false,
@@ -75,6 +82,7 @@ const TISSUE: RecordingSet = RecordingSet {
     rig: "tissue_meat",
     files: &[],
     split: Split::Whole(""),
+    own_to_trial: OwnToTrial::PlaceAndScale,
     stated: &["stress_relaxation", "nonlinear_stiffness"],
     allowed: &[],
     has_unlisted_physics: false,
@@ -86,6 +94,7 @@ const AFM: RecordingSet = RecordingSet {
     rig: "afm_cell",
     files: &[],
     split: ONE_CURVE,
+    own_to_trial: OwnToTrial::Place,
     stated: &["nonlinear_stiffness", "adhesion"],
     allowed: &["hysteresis", "stress_relaxation", "force_drift", "force_bias"],
     has_unlisted_physics: false,
@@ -93,8 +102,27 @@ const AFM: RecordingSet = RecordingSet {
     description: "power law, adhesion, hysteresis or relaxation; a baseline that drifts",
 };
 
+const AXIS: RecordingSet = RecordingSet {
+    folder: "",
+    rig: "",
+    files: &[""],
+    split: ONE_CURVE,
+    own_to_trial: OwnToTrial::Place,
+    stated: &["coulomb_friction"],
+    allowed: &["gravity_load"],
+    has_unlisted_physics: false,
+    friction_is_open: false,
+    description: "Coulomb friction and an offset of the torque",
+};
+const ROBOT_AXIS: RecordingSet = RecordingSet {
+    // The READMEs: either is right, the slow share is too short to tell.
+    stated: &["coulomb_friction", "stribeck_friction"],
+    description: "Coulomb or Stribeck friction, not told apart, and an offset",
+    ..AXIS
+};
+
 /// All of them.
-pub const RECORDING_SETS: [RecordingSet; 24] = [
+pub const RECORDING_SETS: [RecordingSet; 32] = [
     RecordingSet { files: &["ddp", "dircol"], split: Split::Trials("swing_up"), ..ARM },
     RecordingSet { files: &["pd_sysid"], split: Split::Whole("one swing-up"), ..ARM },
     RecordingSet {
@@ -108,6 +136,7 @@ pub const RECORDING_SETS: [RecordingSet; 24] = [
         rig: "pneumatic_seal",
         files: &[""],
         split: Split::Strokes,
+        own_to_trial: OwnToTrial::Place,
         stated: &["hysteresis"],
         allowed: &["force_bias"],
         has_unlisted_physics: true,
@@ -153,6 +182,60 @@ pub const RECORDING_SETS: [RecordingSet; 24] = [
     afm("afm_flipsign", &["fd_2015_flipsign"]),
     afm("afm_spot", &["fd_spot3_2016"]),
     afm("afm_chiaro", &["chiaro_AEBP1_002"]),
+    RecordingSet {
+        folder: "emps_linear_drive",
+        rig: "emps",
+        files: &["track"],
+        split: Split::Trials("tracks"),
+        description: "Coulomb friction, asymmetric by a constant force",
+        ..AXIS
+    },
+    RecordingSet {
+        folder: "emps_linear_drive",
+        rig: "emps",
+        files: &["pulses"],
+        split: Split::Trials("pulses"),
+        description: "Coulomb friction, asymmetric by a constant force",
+        ..AXIS
+    },
+    RecordingSet { folder: "kuka_kr300_joints/joint1", rig: "kuka_joint1", split: Split::Trials("axis"), ..ROBOT_AXIS },
+    RecordingSet { folder: "kuka_kr300_joints/joint6", rig: "kuka_joint6", split: Split::Trials("axis"), ..ROBOT_AXIS },
+    // The README's own figure: a power of 0.7 to 0.8 of the speed beside the dry friction leaves a fifth to a tenth less.
+    RecordingSet {
+        folder: "staubli_tx40_joints/joint1",
+        rig: "tx40_joint1",
+        split: Split::Trials("axis"),
+        allowed: &["sublinear_friction"],
+        description: "Coulomb friction, and viscous friction that grows less than the speed",
+        ..AXIS
+    },
+    RecordingSet {
+        folder: "staubli_tx40_joints/joint4",
+        rig: "tx40_joint4",
+        split: Split::Trials("axis"),
+        allowed: &["gravity_load", "sublinear_friction"],
+        description: "Coulomb friction, and viscous friction that grows less than the speed",
+        ..AXIS
+    },
+    RecordingSet {
+        folder: "laas_motor_cogging",
+        rig: "laas_motor",
+        split: Split::Whole("one run at one speed"),
+        stated: &["cogging"],
+        allowed: &["coulomb_friction", "stribeck_friction", "gravity_load"],
+        description: "cogging of several periods a turn, dry friction",
+        ..AXIS
+    },
+    RecordingSet {
+        folder: "silverbox_duffing",
+        rig: "silverbox",
+        files: &["arrow", "multisine"],
+        split: Split::Trials("circuit"),
+        stated: &["environment_mass", "tool_inertia", "nonlinear_stiffness"],
+        allowed: &["force_bias"],
+        description: "a mass that moves along, a cubic hardening spring, an offset of the force",
+        ..AXIS
+    },
 ];
 
 const fn afm(rig: &'static str, files: &'static [&'static str]) -> RecordingSet {

@@ -35,5 +35,5 @@ pub fn diagnose_specimen(tool: &Path, specimen: &Specimen, home: &Path, case: &s
 fn held_out_rms(specimen: &Specimen, improved: &Path) -> Result<[f64; 2]> {
     let origin = improved.display().to_string();
     let nominal = held_out::refitted(&specimen.rig, &specimen.rig_file.display().to_string(), &specimen.training)?;
-    held_out::left([&nominal, &Rig::read(improved)?], &origin, &specimen.held_out)
+    held_out::left([&nominal, &Rig::read(improved)?], &origin, &specimen.held_out, specimen.set.own_to_trial)
 }

@@ -25,12 +25,15 @@ pub struct RecordingScores {
     pub wrong: usize,
     /// Nothing that is stated is named, and no unknown owned.
     pub missed: usize,
-    /// Specimens with trials that were kept back, of which physics is named.
+    /// Specimens with trials that were kept back, or stretches that did not teach.
     pub held_back: usize,
-    /// On these, the residual with the named physics over that of the refitted nominal law, median.
+    /// On these, the residual of the improved model over that of the refitted nominal law, median.
     pub left_median: f64,
     /// On so many of these it is smaller.
     pub better: usize,
+    /// On so many it is less than half.
+    #[serde(default)]
+    pub halved: usize,
     /// Every specimen.
     pub rows: Vec<SpecimenScore>,
 }
@@ -73,7 +76,7 @@ pub struct SpecimenScore {
     /// Stretches of the trials that taught, each left by what the others taught, as the diagnosis tells it.
     #[serde(rename = "stretches")]
     pub cross_validated: ResidualPair,
-    /// Trials that no diagnosis saw, nothing fitted; none where the specimen cannot be parted.
+    /// Trials that no diagnosis saw, nothing fitted but what belongs to a trial; none where the specimen cannot be parted.
     #[serde(rename = "unseen")]
     pub held_out: Option<ResidualPair>,
     /// Files that taught.
@@ -95,7 +98,7 @@ pub struct SpecimenScore {
 pub struct ResidualPair {
     /// The nominal law, its values refitted.
     pub before: Option<f64>,
-    /// With the named physics.
+    /// With the named physics, and what was learned beside it.
     pub after: Option<f64>,
 }
 
@@ -137,7 +140,10 @@ impl SpecimenScore {
                 row.grade = grade::grade(set, diagnosis);
                 row.leaves_friction_open = set.friction_is_open && grade::leaves_friction_open(diagnosis);
                 row.noise_rms = diagnosis.fit.noise_floor;
-                row.cross_validated = ResidualPair { before: diagnosis.fit.refitted, after: diagnosis.fit.improved };
+                row.cross_validated = ResidualPair {
+                    before: diagnosis.fit.refitted,
+                    after: diagnosis.fit.learned.or(diagnosis.fit.improved),
+                };
                 row.verdict = Some(diagnosis.verdict.clone());
             }
         }
@@ -168,11 +174,11 @@ impl SpecimenScore {
         words
     }
 
-    /// Residual with the named physics over that of the refitted nominal law, on the trials kept back; none where nothing is
-    /// named.
+    /// Residual of the improved model over that of the refitted nominal law, on the trials kept back, or on the stretches that did not
+    /// teach.
     #[must_use]
     pub fn left(&self) -> Option<f64> {
-        let unseen = self.held_out.filter(|_| self.named.iter().any(|name| name != UNKNOWN))?;
+        let unseen = self.held_out.unwrap_or(self.cross_validated);
         Some(unseen.after? / unseen.before?).filter(|left| left.is_finite())
     }
 
@@ -223,6 +229,7 @@ impl RecordingScores {
             missed: count(Grade::Missed),
             held_back: left.len(),
             better: left.iter().filter(|left| **left < 1.0).count(),
+            halved: left.iter().filter(|left| **left < 0.5).count(),
             left_median: median(left.into_iter()),
             rows,
         }

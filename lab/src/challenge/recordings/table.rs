@@ -9,7 +9,18 @@ const MOST: usize = 3;
 #[must_use]
 pub fn line(recorded: &RecordingScores) -> String {
     let RecordingScores {
-        n, named, rest_owned, owned, undecidable, wrong, missed, held_back, left_median, better, ..
+        n,
+        named,
+        rest_owned,
+        owned,
+        undecidable,
+        wrong,
+        missed,
+        held_back,
+        left_median,
+        better,
+        halved,
+        ..
     } = recorded;
     let mut text = format!(
         "Real recordings, {n} specimens: known physics named and nothing else {named} (in {rest_owned} the rest owned as unknown), \
@@ -17,8 +28,8 @@ pub fn line(recorded: &RecordingScores) -> String {
     );
     if *held_back > 0 {
         text += &format!(
-            " On trials that the diagnosis never saw ({held_back} specimens), nothing fitted, the named physics leaves less than the refitted \
-             law in {better}, {:.0} % of it in the median.",
+            " On trials or stretches that did not teach ({held_back} specimens), what belongs to a trial placed, the improved model leaves less \
+             than the refitted law in {better}, less than half of it in {halved}, {:.0} % of it in the median.",
             100.0 * left_median
         );
     }
@@ -38,7 +49,7 @@ pub fn table(recorded: &RecordingScores) -> String {
         "| recording | known | verdict: names | rivals | residual | judgement |\n|---|---|---|---|---|---|\n"
             .to_owned();
     recorded.rows.iter().for_each(|row| text += &of(row));
-    text + "\nResiduals are root mean squares, refitted nominal law to named physics (floor): of the trials kept back, or, marked *, of \
+    text + "\nResiduals are root mean squares, refitted nominal law to improved model (floor): of the trials kept back, or, marked *, of \
             stretches of the same trial, where it cannot be parted.\n"
 }
 

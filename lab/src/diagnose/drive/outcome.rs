@@ -303,10 +303,7 @@ fn expected_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> 
         .iter()
         .map(|trial| {
             let mut noise = trial.clone();
-            noise.position = match rounding(trial, fit, search.scales.resolution) {
-                Some(rounding) => rounding,
-                None => drawn(fit.noise.encoder().sqrt(), trial.len()),
-            };
+            noise.position = drawn(fit.noise.encoder().sqrt(), trial.len());
             noise.effort.fill(0.0);
             if let Some(force) = &mut noise.force {
                 *force = drawn(white_variance(force).sqrt(), force.len());
@@ -315,22 +312,6 @@ fn expected_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> 
         })
         .collect();
     rms(&columns)
-}
-
-/// Share of the encoder's variance from which it is rounding to its step.
-const ROUNDING_SHARE: f64 = 0.5;
-
-/// What rounding to the encoder's step makes of the motion that `fit` follows: no white noise, and none at rest. `None` where the
-/// encoder is noisier than that.
-fn rounding(trial: &DriveTrial, fit: &Fit, step: f64) -> Option<Vec<f64>> {
-    if step * step / 12.0 < ROUNDING_SHARE * fit.noise.encoder() {
-        return None;
-    }
-    let pass = innovations(trial, &fit.model.law(&fit.values), &fit.noise, false);
-    // Filtered position: the reading less what of the innovation the gain left.
-    let kept = |row: usize| fit.noise.encoder() / pass.variance[row];
-    let followed = (0..trial.len()).map(|row| trial.position[row] - kept(row) * pass.innovation[row]);
-    Some(followed.map(|position| (position / step).round() * step - position).collect())
 }
 
 #[cfg(test)]
