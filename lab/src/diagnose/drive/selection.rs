@@ -94,7 +94,9 @@ impl Search<'_> {
         let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape()).count();
         let least_part = if shapes(more) > shapes(less) { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
-        worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
+        // A law that leaves more than the whole effort follows the encoder's rows and explains none of them.
+        self.unexplained(more) < self.scales.effort
+            && worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
             && worth.share > LEAST_SHARE
             && worth.part_of_all > least_part
             && worth.vuong > LEAST_VUONG
