@@ -107,7 +107,8 @@ mod tests {
     #[test]
     fn a_residual_is_held_against_an_expected_noise_above_zero() {
         let over = |floor, rms| {
-            let fit = FitJson { unit: "N".to_owned(), noise_floor: floor, refitted: None, improved: None };
+            let fit =
+                FitJson { unit: "N".to_owned(), noise_floor: floor, refitted: None, improved: None, learned: None };
             fit.over_floor(rms)
         };
         assert_eq!(over(Some(0.5), Some(2.0)), Some(4.0));

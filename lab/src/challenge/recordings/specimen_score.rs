@@ -320,7 +320,13 @@ pub(in crate::challenge) mod tests {
     fn what_is_left_is_the_residual_with_the_physics_over_that_without() {
         assert_eq!(row(Grade::Named, &["gravity_load"], Some([4.0, 1.0])).left(), Some(0.25));
         assert_eq!(row(Grade::Named, &["gravity_load", UNKNOWN], Some([4.0, 1.0])).left(), Some(0.25));
-        assert_eq!(row(Grade::Owned, &[UNKNOWN], Some([4.0, 1.0])).left(), None, "nothing is named");
+        assert_eq!(row(Grade::Owned, &[UNKNOWN], Some([4.0, 1.0])).left(), Some(0.25), "learned, not named");
+        let stretches = ResidualPair { before: Some(4.0), after: Some(3.0) };
+        let whole = SpecimenScore { cross_validated: stretches, ..row(Grade::Named, &["gravity_load"], None) };
+        assert_eq!(whole.left(), Some(0.75), "stretches stand in where no trial was kept back");
+        let both =
+            SpecimenScore { cross_validated: stretches, ..row(Grade::Named, &["gravity_load"], Some([4.0, 1.0])) };
+        assert_eq!(both.left(), Some(0.25), "and nowhere else");
         assert_eq!(row(Grade::Named, &["gravity_load"], Some([0.0, 1.0])).left(), None);
         assert_eq!(row(Grade::Named, &["gravity_load"], None).left(), None);
     }
@@ -340,7 +346,8 @@ pub(in crate::challenge) mod tests {
         ]);
         assert_eq!((score.n, score.named, score.rest_owned, score.owned), (9, 4, 1, 1));
         assert_eq!((score.undecidable, score.wrong, score.missed), (2, 1, 1));
-        assert_eq!((score.held_back, score.better, score.left_median), (4, 2, 0.75));
+        // 0.25, 1, 1.5, 0.5, 0.25: half is not less than half.
+        assert_eq!((score.held_back, score.better, score.halved, score.left_median), (5, 3, 2, 0.5));
     }
 
     #[test]
