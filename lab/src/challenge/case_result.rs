@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn a_line_tells_the_names_or_why_there_is_none_and_no_truth() {
         let found = crate::challenge::case_score::tests::diagnosis(&["adhesion"], &["cogging"]);
-        assert_eq!(CaseResult::new("case-1", Ok(found), 1.5).line(), "case-1: [\"adhesion\"], 1.5 s");
+        assert_eq!(CaseResult::new("case-1", Ok(found), 1.5).line(), "case-1: adhesion, 1.5 s");
         let broke = CaseResult::new("case-2", Err("it stopped".to_owned()), 2.5);
         assert_eq!(broke.line(), "case-2: no answer, 2.5 s: it stopped");
         let lost = CaseResult { failure: None, ..broke };

@@ -369,7 +369,7 @@ pub(in crate::challenge) mod tests {
         assert_eq!(spaced(&[]), "nothing");
         let line = row(Grade::Named, &["gravity_load"], Some([4.0, 1.0])).line();
         assert!(
-            line.starts_with("arm/one [\"gravity_load\"] -> named; held out: 4.00e0 to 1.00e0 (5.00e-1) N, 1.0 s"),
+            line.starts_with("arm/one gravity load -> named; held out: 4.00e0 to 1.00e0 (5.00e-1) N, 1.0 s"),
             "{line}"
         );
     }
