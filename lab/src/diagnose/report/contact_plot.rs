@@ -92,7 +92,7 @@ fn pass(time: &[f64], depth: &[f32], [start, end]: [f64; 2], bilateral: bool) ->
     let touches = |row: &usize| depth[*row] > 0.0;
     // Where the stretch itself lies before the touch or after the release, the contact beside it comes first.
     let from = (least..at(start)).rev().skip_while(|row| !touches(row)).find(|row| !touches(row)).unwrap_or(least);
-    let until = (at(end)..most).skip_while(touches).next().unwrap_or(most);
+    let until = (at(end)..most).find(|row| !touches(row)).unwrap_or(most);
     let until = until.max(at(end)).min(most);
     let margin = APPROACH * (time[until.min(time.len() - 1)] - time[from]);
     at(time[from] - margin).max(least)..at(time[until.min(time.len() - 1)] + margin).clamp(from + 1, most)

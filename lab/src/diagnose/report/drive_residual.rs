@@ -40,8 +40,9 @@ fn rows(outcome: &Outcome, touched: Option<&Touched>) -> Vec<ResidualRow> {
     let before = before(outcome);
     let mut rows = Vec::new();
     for (number, trial) in outcome.trials.iter().enumerate() {
-        for row in 0..trial.len() {
-            let (first, last) = (before[number][row].powi(2), outcome.missing[2][number][row].powi(2));
+        let missing = before[number].iter().zip(&outcome.missing[2][number]);
+        for (row, (first, last)) in missing.enumerate() {
+            let (first, last) = (first.powi(2), last.powi(2));
             let left = if outcome.verdict == Verdict::Unknown { noise } else { last };
             let (position, velocity) = (trial.position[row], velocity(trial, row));
             rows.push(ResidualRow {
