@@ -17,6 +17,7 @@ pub mod monitor;
 pub mod questions;
 pub mod record;
 pub mod report;
+pub mod separating_trial;
 pub mod session;
 pub mod simulated_bed;
 pub mod test_bed;

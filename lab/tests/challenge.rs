@@ -9,6 +9,7 @@ use palpate_cases::{CaseRequest, EffectSelection, draw};
 use palpate_lab::challenge::case_score::CaseScore;
 use palpate_lab::challenge::challenge_score::ChallengeScore;
 use palpate_lab::challenge::recordings;
+use palpate_lab::challenge::scored_case::ScoredCase as _;
 use palpate_lab::challenge::summary;
 use serde_json::Value;
 use statrs::distribution::{Binomial, DiscreteCDF as _};
@@ -219,7 +220,8 @@ fn cases_of_another_author_are_scored_above_our_own() {
     assert_eq!((external.name.as_str(), external.cases, score.cases), ("elsewhere", 2, 0));
     assert_eq!((external.none.n, external.none.false_alarms), (1, 0), "{said}");
     // Something is found; whether by name is a matter of the diagnosis, and here only of its count.
-    let right = external.rows.iter().filter(|row| row.case == "001" && row.named == ["coulomb_friction"]).count();
+    let right =
+        external.rows.iter().filter(|row| row.case == "001" && row.answer.named == ["coulomb_friction"]).count();
     let counts = (external.single.n, external.single.detected, external.single.named_rightly);
     assert_eq!(counts, (1, 1, right), "{said}");
     score.check().unwrap();

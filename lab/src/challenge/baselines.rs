@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bic;
 use super::case_score::CaseScore;
-use super::challenge_score::median;
+use super::statistics::median;
 
 /// What another found in one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -72,10 +72,10 @@ impl BaselineScore {
 pub fn summaries(rows: &[CaseScore]) -> Vec<BaselineSummary> {
     let who: BTreeSet<&str> = rows.iter().flat_map(|row| &row.baselines).map(|other| other.who.as_str()).collect();
     let ours = |row: &CaseScore| {
-        let left = row.after.zip(row.before).map(|(after, before)| after / before);
+        let left = row.answer.after.zip(row.answer.before).map(|(after, before)| after / before);
         BaselineScore {
             who: "palpate".to_owned(),
-            named: row.named.clone(),
+            named: row.answer.named.clone(),
             left,
             seconds: row.seconds,
             failure: row.failure.clone(),

@@ -1,7 +1,5 @@
 //! What came of one case.
 
-use std::collections::BTreeSet;
-
 use palpate_cases::SimulatorKind;
 use palpate_cases::excitation::Excitation;
 use palpate_cases::sensors::SensorGrade;
@@ -9,13 +7,12 @@ use palpate_cases::truth::CaseKind;
 use serde::{Deserialize, Serialize};
 
 use super::baselines::BaselineScore;
+use super::diagnosed_answer::DiagnosedAnswer;
 use super::diagnosis_json::DiagnosisJson;
 use super::drawn_answer::DrawnAnswer;
 use super::parameter_score;
 use super::recordings::specimen_score::spaced;
-
-/// The name under which an answer owns that nothing of its list explains the rest.
-pub const UNKNOWN: &str = "unknown";
+use super::scored_case::{ScoredCase, UNKNOWN};
 
 /// One case, scored.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -41,17 +38,9 @@ pub struct CaseScore {
     pub excitation: Excitation,
     /// Whether the effort is recorded.
     pub effort: bool,
-    /// The answer.
-    pub named: Vec<String>,
-    /// What the answer says that the data do not tell from it.
-    #[serde(rename = "rivals")]
-    pub alternatives: Vec<Vec<String>>,
-    /// The verdict, in its word.
-    pub verdict: Option<String>,
-    /// Held-out residual over the floor, values refitted.
-    pub before: Option<f64>,
-    /// The same with the named physics.
-    pub after: Option<f64>,
+    /// What the diagnosis answered.
+    #[serde(flatten)]
+    pub answer: DiagnosedAnswer,
     /// Parameters of the same law, where the answer is right.
     pub values: Vec<ParameterScore>,
     /// From the command's start to its end.
@@ -84,10 +73,6 @@ impl ParameterScore {
     }
 }
 
-fn set(names: &[String]) -> BTreeSet<&str> {
-    names.iter().map(String::as_str).collect()
-}
-
 impl CaseScore {
     /// Holds what was `told` of a case, or why nothing was, against its `truth`.
     #[must_use]
@@ -103,11 +88,7 @@ impl CaseScore {
             grade: truth.grade,
             excitation: truth.excitation,
             effort: truth.channels.iter().any(|channel| channel.starts_with("effort")),
-            named: Vec::new(),
-            alternatives: Vec::new(),
-            verdict: None,
-            before: None,
-            after: None,
+            answer: DiagnosedAnswer::default(),
             values: Vec::new(),
             seconds,
             baselines: Vec::new(),
@@ -116,14 +97,10 @@ impl CaseScore {
         match diagnosis {
             Err(failure) => row.failure = Some(failure.to_owned()),
             Ok(diagnosis) => {
-                row.named = diagnosis.names();
-                row.alternatives = diagnosis.alternative_names();
-                row.before = diagnosis.fit.over_floor(diagnosis.fit.refitted);
-                row.after = diagnosis.fit.over_floor(diagnosis.fit.improved);
+                row.answer = DiagnosedAnswer::of(diagnosis);
                 if truth.kind == CaseKind::Single && row.is_right() {
                     row.values = parameter_score::compare(truth, &diagnosis.physics);
                 }
-                row.verdict = Some(diagnosis.verdict.clone());
             }
         }
         row
@@ -146,69 +123,28 @@ impl CaseScore {
         self.kind == CaseKind::Single && self.strength >= 1.0
     }
 
-    /// Physics named, or owned as unknown.
-    #[must_use]
-    pub fn is_detected(&self) -> bool {
-        !self.named.is_empty()
-    }
-
     /// Physics where nothing is missing.
     #[must_use]
     pub fn is_false_alarm(&self) -> bool {
         self.kind == CaseKind::None && self.is_detected()
     }
 
-    /// Whether the unknown is owned.
-    #[must_use]
-    pub fn is_owned(&self) -> bool {
-        self.named.iter().any(|name| name == UNKNOWN)
-    }
-
-    /// The names of the answer are those of the truth, none more; outside of the list, the unknown alone.
-    #[must_use]
-    pub fn is_right(&self) -> bool {
-        match self.kind {
-            _ if self.failure.is_some() => false,
-            CaseKind::Outside => set(&self.named) == BTreeSet::from([UNKNOWN]),
-            _ => set(&self.named) == set(&self.truth),
-        }
-    }
-
-    /// The truth is among the names of the answer and its rivals.
-    #[must_use]
-    pub fn is_within(&self) -> bool {
-        let hidden = set(&self.truth);
-        self.is_right() || (!hidden.is_empty() && self.is_detected() && hidden.is_subset(&self.offered()))
-    }
-
-    /// Every name in the answer and its rivals.
-    #[must_use]
-    pub fn offered(&self) -> BTreeSet<&str> {
-        self.named.iter().chain(self.alternatives.iter().flatten()).map(String::as_str).collect()
-    }
-
     /// For people who watch.
     #[must_use]
     pub fn line(&self) -> String {
-        let mark = match () {
-            () if self.failure.is_some() => "BROKE",
-            () if self.is_right() => "right",
-            () if self.is_within() => "within",
-            () if self.is_detected() => "WRONG",
-            () => "missed",
-        };
         format!(
-            "{mark:6} {}/{}/{} {} -> {}; not told apart: {}; strength {:.2}, {} sensors, {} motion, left {}, {:.1} s{}",
+            "{:6} {}/{}/{} {} -> {}; not told apart: {}; strength {:.2}, {} sensors, {} motion, left {}, {:.1} s{}",
+            self.mark(),
             self.seed,
             self.index,
             self.source.name(),
             spaced(&self.truth),
-            spaced(&self.named),
-            listed(&self.alternatives),
+            spaced(&self.answer.named),
+            listed(&self.answer.alternatives),
             self.strength,
             word(&self.grade),
             word(&self.excitation),
-            self.after.map_or_else(|| "unknown".to_owned(), |after| format!("{after:.2} of the expected noise")),
+            self.answer.after.map_or_else(|| "unknown".to_owned(), |after| format!("{after:.2} of the expected noise")),
             self.seconds,
             self.failure.as_ref().map(|why| format!(": {why}")).unwrap_or_default()
         )
@@ -224,6 +160,29 @@ fn listed(sets: &[Vec<String>]) -> String {
 /// The word of a choice, as it stands in the JSON.
 fn word(choice: &impl Serialize) -> String {
     serde_json::to_value(choice).ok().and_then(|word| Some(word.as_str()?.replace('_', " "))).unwrap_or_default()
+}
+
+impl ScoredCase for CaseScore {
+    fn truth(&self) -> &[String] {
+        &self.truth
+    }
+
+    fn answer(&self) -> &DiagnosedAnswer {
+        &self.answer
+    }
+
+    fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
+    /// The names of the answer are those of the truth, none more; outside of the list, the unknown alone.
+    fn is_right(&self) -> bool {
+        match self.kind {
+            _ if self.failure.is_some() => false,
+            CaseKind::Outside => self.answer.names_exactly(&[UNKNOWN.to_owned()]),
+            _ => self.answer.names_exactly(&self.truth),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -324,7 +283,7 @@ pub(super) mod tests {
     fn a_row_holds_what_answer_and_diagnosis_say() {
         let truth = answer("single", &["adhesion"], 0.7);
         let row = CaseScore::score(&truth, Ok(&diagnosis(&["adhesion"], &["cogging+backlash"])), 3.5);
-        assert_eq!((row.before, row.after, row.seconds), (Some(4.0), Some(1.2), 3.5));
+        assert_eq!((row.answer.before, row.answer.after, row.seconds), (Some(4.0), Some(1.2), 3.5));
         assert_eq!((row.seed, row.index, row.strength, row.effort), (1, 7, 0.7, true));
         assert!(!row.is_large() && row.states(&truth));
         assert!(CaseScore::score(&answer("single", &["adhesion"], 1.0), Err(""), 0.0).is_large());
@@ -336,7 +295,7 @@ pub(super) mod tests {
         ] {
             assert!(!row.states(&other), "{other:?}");
         }
-        assert_eq!(row.offered(), BTreeSet::from(["adhesion", "backlash", "cogging"]));
+        assert_eq!(row.answer.offered(), std::collections::BTreeSet::from(["adhesion", "backlash", "cogging"]));
     }
 
     /// A diagnosis that names `name` with a pull-off force.

@@ -1,16 +1,19 @@
 //! The score of all cases, in the layout of `palpate.challenge/1`.
 
-use std::collections::BTreeMap;
-
 use anyhow::{Result, bail, ensure};
 use palpate_cases::truth::CaseKind;
 use serde::{Deserialize, Serialize};
 
+use super::case_counts::{NoEffectCounts, OutsideCounts, PairCounts};
 use super::case_score::{CaseScore, ParameterScore};
 use super::commitment::{OpenedAnswers, Origin, hash};
 use super::drawn_answer::DrawnAnswer;
-use super::external_cases::{ExternalAnswer, ExternalCaseScore, ExternalSetScore};
+use super::external_cases::ExternalAnswer;
+use super::external_score::{ExternalCaseScore, ExternalSetScore};
 use super::recordings::specimen_score::RecordingScores;
+use super::scored_case::ScoredCase as _;
+use super::single_effect_counts::SingleEffectCounts;
+use super::statistics::{median, share};
 
 /// A run: its score, and the cases it was made of.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -55,76 +58,6 @@ pub struct ChallengeScore {
     pub answers: Vec<String>,
 }
 
-/// Cases in which nothing is missing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct NoEffectCounts {
-    /// How many.
-    pub n: usize,
-    /// Physics named, or unknown.
-    pub false_alarms: usize,
-}
-
-/// Cases with one effect of the list.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct SingleEffectCounts {
-    /// How many.
-    pub n: usize,
-    /// Physics named, or unknown.
-    pub detected: usize,
-    /// The effect and nothing else.
-    pub named_rightly: usize,
-    /// The effect among the answer and its rivals.
-    pub within_rivals: usize,
-    /// Names in answer and rivals where something was detected, mean.
-    pub mean_set_size: f64,
-    /// By strength.
-    pub by_strength: Vec<StrengthBand>,
-    /// By name.
-    pub by_effect: BTreeMap<String, EffectCounts>,
-}
-
-/// Cases of a band of strengths.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct StrengthBand {
-    /// Strength from which on.
-    pub from: f64,
-    /// Strength below which.
-    pub to: f64,
-    /// How many.
-    pub n: usize,
-    /// Physics named, or unknown.
-    pub detected: usize,
-    /// The effect and nothing else.
-    pub named_rightly: usize,
-}
-
-/// Cases of one effect.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct EffectCounts {
-    /// How many.
-    pub n: usize,
-    /// The effect and nothing else.
-    pub named_rightly: usize,
-}
-
-/// Cases with two effects of the list.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PairCounts {
-    /// How many.
-    pub n: usize,
-    /// Both and nothing else.
-    pub named_rightly: usize,
-}
-
-/// Cases with an effect that the list does not hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct OutsideCounts {
-    /// How many.
-    pub n: usize,
-    /// Called unknown.
-    pub owned: usize,
-}
-
 /// Parameters of effects that were named rightly.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ParameterStatistics {
@@ -142,9 +75,6 @@ pub struct ResidualStatistics {
     /// With the named physics.
     pub after_median: f64,
 }
-
-/// Bounds of the bands of strength: half a decade each, and what lies beyond.
-const BANDS: [f64; 7] = [0.0, 0.1, 0.316, 1.0, 3.16, 10.0, 1000.0];
 
 impl ChallengeScore {
     /// The score of `rows`, of `sources` and of `recorded`, which were scored against `answers`.
@@ -172,16 +102,16 @@ impl ChallengeScore {
             seed,
             sealed_sha256: answers.sha256().to_owned(),
             cases: rows.len(),
-            none: NoEffectCounts { n: none.len(), false_alarms: count(&none, CaseScore::is_false_alarm) },
-            pairs: PairCounts { n: pairs.len(), named_rightly: count(&pairs, CaseScore::is_right) },
-            outside: OutsideCounts { n: outside.len(), owned: count(&outside, CaseScore::is_owned) },
+            none: NoEffectCounts::of(&none),
+            pairs: PairCounts::of(&pairs),
+            outside: OutsideCounts::of(&outside),
             parameters: ParameterStatistics {
                 median_error: median(values.iter().map(|value| value.error())),
                 coverage: share(values.iter().filter(|value| value.covered).count(), values.len()),
             },
             residual_over_floor: ResidualStatistics {
-                before_median: right(|row| row.before),
-                after_median: right(|row| row.after),
+                before_median: right(|row| row.answer.before),
+                after_median: right(|row| row.answer.after),
             },
             seconds_median: median(rows.iter().map(|row| row.seconds)),
             single: SingleEffectCounts::of(&single),
@@ -256,40 +186,6 @@ impl ChallengeScore {
     }
 }
 
-impl SingleEffectCounts {
-    fn of(rows: &[&CaseScore]) -> Self {
-        let detected: Vec<f64> =
-            rows.iter().filter(|row| row.is_detected()).map(|row| row.offered().len() as f64).collect();
-        let mut by_effect = BTreeMap::new();
-        for row in rows {
-            let effect = by_effect.entry(row.truth.join(" and ")).or_insert(EffectCounts { n: 0, named_rightly: 0 });
-            effect.n += 1;
-            effect.named_rightly += usize::from(row.is_right());
-        }
-        Self {
-            n: rows.len(),
-            detected: detected.len(),
-            named_rightly: count(rows, CaseScore::is_right),
-            within_rivals: count(rows, CaseScore::is_within),
-            mean_set_size: detected.iter().sum::<f64>() / detected.len().max(1) as f64,
-            by_strength: BANDS.windows(2).filter_map(|bounds| StrengthBand::of(rows, bounds[0], bounds[1])).collect(),
-            by_effect,
-        }
-    }
-}
-
-impl StrengthBand {
-    fn of(rows: &[&CaseScore], from: f64, to: f64) -> Option<Self> {
-        let band: Vec<&CaseScore> = rows.iter().filter(|row| (from..to).contains(&row.strength)).copied().collect();
-        let (detected, named_rightly) = (count(&band, CaseScore::is_detected), count(&band, CaseScore::is_right));
-        (!band.is_empty()).then_some(Self { from, to, n: band.len(), detected, named_rightly })
-    }
-}
-
-fn count(rows: &[&CaseScore], is: fn(&CaseScore) -> bool) -> usize {
-    rows.iter().filter(|row| is(row)).count()
-}
-
 /// SHA-256 of all rows as JSON.
 fn rows_hash(rows: &[CaseScore], sources: &[ExternalSetScore], recorded: Option<&RecordingScores>) -> Result<String> {
     let others: Vec<_> = sources.iter().map(|set| (&set.name, &set.rows)).collect();
@@ -297,26 +193,10 @@ fn rows_hash(rows: &[CaseScore], sources: &[ExternalSetScore], recorded: Option<
     Ok(hash(serde_json::to_string(&(rows, others, real))?.as_bytes()))
 }
 
-/// `hits` of `of`; zero where there is none.
-#[must_use]
-pub fn share(hits: usize, of: usize) -> f64 {
-    if of == 0 { 0.0 } else { hits as f64 / of as f64 }
-}
-
-/// The median; zero where there is none, for JSON has no word for what is no number.
-#[must_use]
-pub fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    match sorted.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => sorted[n / 2],
-        n => 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]),
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
     use crate::challenge::case_score::tests::diagnosis;
     use crate::challenge::commitment::CommittedCase;
@@ -468,13 +348,6 @@ pub(super) mod tests {
         assert!(own.contains("something else is said to be true"), "{own}");
         let other = rewritten(|score| score.sources[0].rows[0].truth = vec!["adhesion".to_owned()]);
         assert!(other.contains("elsewhere/000"), "{other}");
-    }
-
-    #[test]
-    fn medians_and_shares() {
-        assert_eq!(median([3.0, 1.0, 2.0].into_iter()), 2.0);
-        assert_eq!(median([4.0, 1.0, 2.0, 3.0].into_iter()), 2.5);
-        assert_eq!((median(std::iter::empty()), share(0, 0), share(1, 4)), (0.0, 0.0, 0.25));
     }
 
     #[test]

@@ -16,6 +16,7 @@ use palpate_cases::truth::CaseKind;
 use super::binomial::clopper_pearson;
 use super::case_score::CaseScore;
 use super::challenge_score::ChallengeScore;
+use super::scored_case::ScoredCase as _;
 use super::targets::{Target, external_lines, statistics, targets};
 use crate::page::shell;
 

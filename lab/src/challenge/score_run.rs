@@ -9,7 +9,8 @@ use super::case_score::CaseScore;
 use super::challenge_score::ChallengeScore;
 use super::commitment::{CommittedCase, OpenedAnswers, Origin};
 use super::drawn_answer::DrawnAnswer;
-use super::external_cases::{ExternalAnswer, ExternalCaseScore, ExternalSetScore};
+use super::external_cases::ExternalAnswer;
+use super::external_score::{ExternalCaseScore, ExternalSetScore};
 use super::recordings::specimen::Specimen;
 use super::recordings::specimen_score::{RecordingScores, SpecimenScore};
 

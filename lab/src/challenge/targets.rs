@@ -4,6 +4,7 @@ use palpate_cases::truth::CaseKind;
 
 use super::case_score::CaseScore;
 use super::challenge_score::ChallengeScore;
+use super::scored_case::ScoredCase as _;
 
 /// One line.
 #[derive(Debug, Clone)]

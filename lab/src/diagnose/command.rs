@@ -15,7 +15,7 @@ use crate::diagnose::report::diagnosis::{Diagnosis, Run};
 use crate::diagnose::report::html;
 use crate::diagnose::report::model_file::model_file;
 use crate::error::{InputError, UsageError};
-use crate::investigate::session::separating_trial;
+use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
 use crate::page::quantity;
 use crate::recording::Recording;

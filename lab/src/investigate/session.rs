@@ -8,13 +8,12 @@ use anyhow::{Context as _, Result, bail};
 use super::monitor::hold_against;
 use super::questions::{has_unknown, questions, words};
 use super::record::{Investigation, Outcome, Round, State, TrialRecord, round_folder, write};
+use super::separating_trial::{capitalized, explanations_of, noise};
 use super::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
-use crate::diagnose::report::diagnosis::Experiment;
 use crate::diagnose::{Found, diagnose};
 use crate::experiment_design::discrimination::Noise;
-use crate::experiment_design::explanation::{UNKNOWN, explanations};
 use crate::experiment_design::loop_model::LoopModel;
-use crate::experiment_design::planner::{DECISIVE_ENERGY, LEAST_NEW_STATES, Situation};
+use crate::experiment_design::planner::{LEAST_NEW_STATES, Situation};
 use crate::experiment_design::{Explanation, Limits, Plan, Question, plan};
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
@@ -283,67 +282,6 @@ fn is_confirmed(investigation: &Investigation, standing: &Standing) -> bool {
     !open && matches!(states.as_slice(), [.., before, now] if before.physics == now.physics)
 }
 
-/// The answer of `found` and its alternatives as rigs.
-fn explanations_of(found: &Found, trials: &[Recording], closed_loop: &LoopModel, noise: &Noise) -> Vec<Explanation> {
-    let names = found.answer.physics.iter().map(|physics| physics.name.clone()).filter(|name| name != UNKNOWN);
-    let answer = Explanation { physics: names.collect(), rig: found.improved.clone() };
-    let names = |of: &[String]| of.iter().cloned().collect::<std::collections::BTreeSet<String>>();
-    let known = |rig: &Rig| names(&rig.effects.iter().map(|table| table.name.clone()).collect::<Vec<_>>());
-    // The contact's alternatives come with fitted rigs of their own.
-    let (mut fitted, mut open) = (Vec::new(), Vec::new());
-    for alternative in &found.answer.alternatives {
-        let wanted = names(&alternative.physics);
-        let own = found.alternatives.iter().find(|rig| wanted.is_subset(&known(rig)));
-        match own {
-            Some(rig) => fitted.push(Explanation { physics: alternative.physics.clone(), rig: rig.clone() }),
-            None => open.push(alternative.physics.clone()),
-        }
-    }
-    let mut all = explanations(answer, &open, trials, closed_loop, noise);
-    all.extend(fitted);
-    all
-}
-
-/// Expected noise of each channel, no less than what `found` leaves in it.
-fn noise(rig: &Rig, trials: &[Recording], found: &Found) -> Noise {
-    let residual = |channel: &str| {
-        let of = found.answer.channels.iter().find(|fit| fit.channel == channel);
-        of.map_or(0.0, |fit| if fit.improved.is_finite() { fit.improved } else { 0.0 })
-    };
-    Noise::of(rig, trials, [residual("force"), residual("effort")])
-}
-
-/// The trial that best tells the answer of `found` from its alternatives, within what `trials` did; `None` where there is no alternative,
-/// or no motion tells anything.
-#[must_use]
-pub fn separating_trial(rig: &Rig, found: &Found, trials: &[Recording]) -> Option<Experiment> {
-    let limits = Limits::of_recordings(trials)?;
-    let closed_loop = LoopModel::new(rig, trials);
-    let noise = noise(rig, trials, found);
-    let explanations = explanations_of(found, trials, &closed_loop, &noise);
-    let open = questions(found, &explanations)
-        .into_iter()
-        .filter(|(question, _)| matches!(question, Question::Alternative(_)));
-    let (questions, words): (Vec<Question>, Vec<String>) = open.unzip();
-    if questions.is_empty() {
-        return None;
-    }
-    let (explanations, questions) = (&explanations, &questions);
-    let situation = Situation { explanations, questions, trials, limits: &limits, noise, closed_loop, ease: 1.0 };
-    let plan = plan(&situation)?;
-    let told = words.iter().zip(&plan.expected).map(|(words, energy)| {
-        let enough = if *energy >= DECISIVE_ENERGY { "it decides" } else { "too little to decide for certain" };
-        format!("{words}: {enough} ({:.1} of {DECISIVE_ENERGY:.0})", energy.min(999.0))
-    });
-    let text = format!(
-        "{}. It goes no farther, quicker or harder than the recordings did. What it is expected to tell: {}.",
-        capitalized(&plan.motions.join("; then ")),
-        told.collect::<Vec<_>>().join("; "),
-    );
-    let time = (0..plan.reference.len()).map(|row| row as f64 / closed_loop.rate_hz).collect();
-    Some(Experiment { text, time, reference: plan.reference })
-}
-
 /// Where the recording of round `number` is.
 fn recording_file(folder: &Path, number: u64) -> PathBuf {
     round_folder(folder, number).join("recording.csv")
@@ -390,11 +328,6 @@ fn why(plan: &Plan, standing: &Standing) -> String {
     }
     let names: Vec<String> = standing.explanations.iter().map(|one| words(&one.physics)).collect();
     text + &format!(". It keeps the limits with a margin under each of: {}.", names.join(", "))
-}
-
-fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The reference as a file: `t_s` and `reference_m` or `reference_rad`.

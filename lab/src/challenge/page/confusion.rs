@@ -40,7 +40,7 @@ fn truth(row: &CaseScore) -> (u8, String) {
 }
 
 fn said(row: &CaseScore) -> String {
-    match row.named.as_slice() {
+    match row.answer.named.as_slice() {
         [] => "nothing".to_owned(),
         [one] => one.clone(),
         [one, rest @ ..] if rest.iter().all(|other| other == one) => one.clone(),

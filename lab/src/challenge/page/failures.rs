@@ -7,6 +7,7 @@ use palpate_cases::truth::CaseKind;
 
 use super::super::case_score::CaseScore;
 use super::super::challenge_score::ChallengeScore;
+use super::super::scored_case::ScoredCase as _;
 
 pub(super) fn section(challenge: &ChallengeScore) -> Markup {
     let mut failures: Vec<&CaseScore> = challenge.rows.iter().filter(|row| !row.is_right()).collect();
@@ -31,7 +32,7 @@ fn line(row: &CaseScore) -> Markup {
             th { (row.index) small { (super::title(row.source)) } }
             td.text { (names(&row.truth)) }
             td { (format!("{:.2}", row.strength)) }
-            td.text { @if let Some(why) = &row.failure { (why) } @else { (names(&row.named)) } }
+            td.text { @if let Some(why) = &row.failure { (why) } @else { (names(&row.answer.named)) } }
             td.text { (how(row)) }
             td.text { (hard(row)) }
         }
@@ -44,9 +45,9 @@ fn how(row: &CaseScore) -> &'static str {
         () if row.is_false_alarm() => "false alarm",
         () if !row.is_detected() => "missed",
         () if row.is_within() => "truth among answer and alternatives",
-        () if row.is_owned() && row.named.len() == 1 => "reported as unknown",
+        () if row.is_owned() && row.answer.named.len() == 1 => "reported as unknown",
         () if row.kind == CaseKind::Outside && row.is_owned() => "unknown, with a wrong name beside",
-        () if row.truth.iter().any(|truth| row.named.contains(truth)) => "found in part",
+        () if row.truth.iter().any(|truth| row.answer.named.contains(truth)) => "found in part",
         () => "another name",
     }
 }

@@ -3,7 +3,8 @@
 use maud::{Markup, html};
 
 use super::super::binomial::clopper_pearson;
-use super::super::challenge_score::{ChallengeScore, StrengthBand};
+use super::super::challenge_score::ChallengeScore;
+use super::super::single_effect_counts::StrengthBand;
 
 /// px down; shares of the width across.
 const TOP: f64 = 14.0;

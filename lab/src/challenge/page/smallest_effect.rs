@@ -8,7 +8,9 @@ use palpate_cases::{CaseRequest, EffectSelection, SimulatorKind, draw};
 
 use super::super::case_files::{self, CaseFiles};
 use super::super::case_score::CaseScore;
-use super::super::challenge_score::{ChallengeScore, median};
+use super::super::challenge_score::ChallengeScore;
+use super::super::scored_case::ScoredCase as _;
+use super::super::statistics::median;
 use crate::diagnose::diagnose;
 use crate::diagnose::report::diagnosis::Trace;
 

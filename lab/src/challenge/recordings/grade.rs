@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::known_physics::RecordingSet;
-use crate::challenge::case_score::UNKNOWN;
 use crate::challenge::diagnosis_json::DiagnosisJson;
+use crate::challenge::scored_case::UNKNOWN;
 
 /// Names of dry friction.
 pub const DRY: [&str; 2] = ["hysteresis", "coulomb_friction"];

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::grade::{self, Grade};
 use super::specimen::{Specimen, names};
-use crate::challenge::case_score::UNKNOWN;
-use crate::challenge::challenge_score::median;
 use crate::challenge::diagnosis_json::DiagnosisJson;
+use crate::challenge::scored_case::UNKNOWN;
+use crate::challenge::statistics::median;
 
 /// All specimens, and how many came out how.
 #[derive(Debug, Clone, Serialize, Deserialize)]
