@@ -47,15 +47,12 @@ pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Ve
     let scales = scales(trials, rig)?;
     let variance = encoder_variance(trials, &scales);
     let data = Data { trials, least_encoder_variance: 0.3 * variance };
-    let encoder = rig.encoder.unwrap_or(Side::Load);
-    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
-        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
-    let model = Model { terms, scales };
+    let (model, effects) = law_of(rig, scales);
     let band = LOWEST_BAND_HZ.min(0.1 / scales.period_s);
     let noise =
         Noise { ln_disturbance: 0.0, ln_encoder: variance.ln() }.with_crossing(band, scales.period_s, rig.inertia);
     let under = |rows: f64| {
-        let values = [vec![rig.inertia, rig.viscous, rows * scales.period_s], values.concat()].concat();
+        let values = [&[rig.inertia, rig.viscous, rows * scales.period_s], effects.as_slice()].concat();
         let fit = Fit { model: model.clone(), values, noise, log_likelihood: 0.0, ended: Ended::Converged };
         missing_force(&data, &fit, &noise)
     };
@@ -104,7 +101,8 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// Variance of the encoder, m^2 or rad^2: that of the quietest trial, and no less than a third of what rounding to the encoder's step leaves.
+/// Variance of the encoder, m^2 or rad^2: that of the quietest trial, and no less than a third of what rounding to the encoder's
+/// step leaves.
 #[must_use]
 pub fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
     let white = trials.iter().map(DriveTrial::encoder_variance).fold(f64::INFINITY, f64::min);
@@ -114,16 +112,21 @@ pub fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
 /// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
 const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
 
-/// The law that `rig` states, its values refitted; `None` where nothing could be.
-#[must_use]
-pub fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_variance: f64) -> Option<Fit> {
+/// The law that `rig` states, with the values of its effects.
+fn law_of(rig: &NominalDrive, scales: Scales) -> (Model, Vec<f64>) {
     let encoder = rig.encoder.unwrap_or(Side::Load);
     let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
         rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
-    let model = Model { terms, scales };
+    (Model { terms, scales }, values.concat())
+}
+
+/// The law that `rig` states, its values refitted; `None` where nothing could be.
+#[must_use]
+pub fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_variance: f64) -> Option<Fit> {
+    let (model, effects) = law_of(rig, scales);
     let noise = Noise { ln_disturbance: scales.starting_density().ln(), ln_encoder: encoder_variance.ln() };
     let fits = DELAY_STARTS.map(|rows| {
-        let start = [vec![scales.inertia, scales.viscous, rows * scales.period_s], values.concat()].concat();
+        let start = [&[scales.inertia, scales.viscous, rows * scales.period_s], effects.as_slice()].concat();
         fit(data, &model, &start, noise, Effort::FULL)
     });
     let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
