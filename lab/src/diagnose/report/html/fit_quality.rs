@@ -1,4 +1,4 @@
-//! How well the models fit: four bars a channel.
+//! How well the models fit: up to five bars a channel.
 
 use super::super::diagnosis::{Diagnosis, FitQuality, Verdict};
 use super::axis::{Axis, across};
@@ -20,6 +20,7 @@ pub(super) fn section(answer: &Diagnosis) -> Markup {
             p.fine {
                 "Each bar is the typical error (root mean square) of a simulation: as given, with the same physics and refitted values"
                 @if names_physics(answer) { ", and with the named physics added" }
+                @if answer.fit.learned.is_some() { ", and with a curve that was learned for what no name explains" }
                 ". Shorter is better, and the expected noise is what the sensors alone would leave. Every figure is from stretches of the recordings that no fit saw, so more numbers to turn do not by themselves shorten a bar."
             }
             div.pair { @for goodness in channels { (figure(answer, goodness)) } }
@@ -60,6 +61,9 @@ fn bars(answer: &Diagnosis, goodness: &FitQuality) -> Vec<Bar> {
     ];
     if names_physics(answer) {
         bars.push(Bar { name: "with named physics", class: "improved", value: goodness.improved });
+    }
+    if let Some(value) = goodness.learned {
+        bars.push(Bar { name: "with a learned curve", class: "learned", value });
     }
     bars.push(Bar { name: "expected noise", class: "floor", value: goodness.noise_floor });
     bars
@@ -103,6 +107,9 @@ fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
             "Refitted values still leave " strong { (left) } " in the " (name) ", and no effect that was tried takes that away."
         } @else {
             "Refitted values leave " strong { (left) } " in the " (name) ", which is no sign of missing physics."
+        }
+        @if let Some(rest) = goodness.learned {
+            " A curve that was learned from the recordings, and has no name, leaves " strong { (multiple(rest / goodness.noise_floor)) } "."
         }
     }
 }
