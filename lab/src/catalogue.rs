@@ -37,8 +37,9 @@ pub fn run(args: &EffectsArgs) -> anyhow::Result<()> {
     let chosen = chosen(&args.names)?;
     match &args.json {
         None => {
-            let index = if args.names.is_empty() { text::index(&chosen) } else { String::new() };
-            print(&(index + &text::page(&chosen, textwrap::termwidth().clamp(MIN_COLUMNS, MAX_COLUMNS))))
+            let columns = textwrap::termwidth().clamp(MIN_COLUMNS, MAX_COLUMNS);
+            let index = if args.names.is_empty() { text::index(&chosen, columns) } else { String::new() };
+            print(&(index + &text::page(&chosen, columns)))
         }
         Some(path) if path.as_os_str() == "-" => print(&machine::document(&chosen)?),
         Some(path) => {

@@ -9,18 +9,22 @@ use crate::rig::Coordinate;
 const FOOT: &str = "In a rig file an effect is a table [[effect]] with its name, perhaps its form, and its parameters, each with \
                     its unit in its key: alpha in N s/m^2 is alpha_n_s_m2.";
 
-/// One line an effect, for who looks for a name.
-pub fn index(effects: &[&'static dyn Effect]) -> String {
+/// An entry an effect, for who looks for a name, wrapped to `width` columns.
+pub fn index(effects: &[&'static dyn Effect], width: usize) -> String {
     let longest = effects.iter().map(|effect| effect.spec().name.len()).max().unwrap_or(0);
-    let lines = effects.iter().map(|effect| {
+    let mut page = Page { text: String::new(), width };
+    for effect in effects {
         let spec = effect.spec();
-        format!("{:longest$}  {:7}  {}\n", spec.name, spec.place.name(), spec.statement)
-    });
-    lines.collect::<String>() + INDEX_FOOT
+        page.put(0, longest + 11, &format!("{:longest$}  {:7}  {}", spec.name, spec.place.name(), spec.statement));
+    }
+    page.text.push('\n');
+    page.put(0, 0, INDEX_FOOT);
+    page.text.push('\n');
+    page.text
 }
 
 const INDEX_FOOT: &str =
-    "\n`palpate effects NAME` gives one alone; what none of them explains: `palpate effects learned`.\n\n";
+    "`palpate effects NAME` gives one alone; what none of them explains: `palpate effects learned`.";
 
 /// The page, wrapped to `width` columns.
 pub fn page(effects: &[&'static dyn Effect], width: usize) -> String {

@@ -33,7 +33,7 @@ pub struct RecordingScores {
     pub better: usize,
     /// On so many it is less than half.
     #[serde(default)]
-    pub halved: usize,
+    pub halved: Option<usize>,
     /// Every specimen.
     pub rows: Vec<SpecimenScore>,
 }
@@ -229,7 +229,7 @@ impl RecordingScores {
             missed: count(Grade::Missed),
             held_back: left.len(),
             better: left.iter().filter(|left| **left < 1.0).count(),
-            halved: left.iter().filter(|left| **left < 0.5).count(),
+            halved: Some(left.iter().filter(|left| **left < 0.5).count()),
             left_median: median(left.into_iter()),
             rows,
         }
@@ -347,7 +347,7 @@ pub(in crate::challenge) mod tests {
         assert_eq!((score.n, score.named, score.rest_owned, score.owned), (9, 4, 1, 1));
         assert_eq!((score.undecidable, score.wrong, score.missed), (2, 1, 1));
         // 0.25, 1, 1.5, 0.5, 0.25: half is not less than half.
-        assert_eq!((score.held_back, score.better, score.halved, score.left_median), (5, 3, 2, 0.5));
+        assert_eq!((score.held_back, score.better, score.halved, score.left_median), (5, 3, Some(2), 0.5));
     }
 
     #[test]

@@ -27,9 +27,10 @@ pub fn line(recorded: &RecordingScores) -> String {
          owned as unknown {owned}, undecidable and said so {undecidable}, wrong {wrong}, missed {missed}."
     );
     if *held_back > 0 {
+        let halved = halved.map_or(String::new(), |halved| format!(" less than half of it in {halved},"));
         text += &format!(
             " On trials or stretches that did not teach ({held_back} specimens), what belongs to a trial placed, the improved model leaves less \
-             than the refitted law in {better}, less than half of it in {halved}, {:.0} % of it in the median.",
+             than the refitted law in {better},{halved} {:.0} % of it in the median.",
             100.0 * left_median
         );
     }

@@ -1,7 +1,7 @@
 //! What a model leaves of rows that its values were not fitted to.
 
 use super::filter::innovations;
-use super::fit::{Data, Fit, search_noise, search_values};
+use super::fit::{Data, Fit, search_values};
 use super::noise::Noise;
 use super::trial::DriveTrial;
 
@@ -16,9 +16,6 @@ pub struct Folds {
 pub struct HeldOut {
     /// N or N m, row by row.
     pub missing: Vec<Vec<f64>>,
-    /// Density of the disturbance that each half shows under the values of the other, mean over their rows, N^2 s or (N m)^2 s. The
-    /// encoder's noise is none of it, whatever the band.
-    pub density: f64,
     /// Fitted to the first half, and to the second.
     pub values: [Vec<f64>; 2],
 }
@@ -50,17 +47,10 @@ impl Folds {
     #[must_use]
     pub fn held_out(&self, data: &Data<'_>, fit: &Fit, common: &Noise) -> HeldOut {
         let mut missing: Vec<Vec<f64>> = data.trials.iter().map(|trial| vec![0.0; trial.len()]).collect();
-        let (mut density, mut rows) = (0.0, 0usize);
         let values = [0, 1].map(|half| {
             let own = Data { trials: &self.halves[half], ..*data };
             let mut values = fit.values.clone();
             search_values(&own, &fit.model, &mut values, &fit.noise, STEPS);
-            let unseen = Data { trials: &self.halves[1 - half], ..*data };
-            let mut noise = fit.noise;
-            search_noise(&unseen, &fit.model, &values, &mut noise);
-            let own: usize = unseen.trials.iter().map(DriveTrial::len).sum();
-            density += own as f64 * noise.disturbance();
-            rows += own;
             let law = fit.model.law(&values);
             for (piece, (trial, start)) in self.halves[1 - half].iter().zip(&self.places[1 - half]) {
                 let force = innovations(piece, &law, common, true).disturbance;
@@ -68,7 +58,7 @@ impl Folds {
             }
             values
         });
-        HeldOut { missing, density: density / rows.max(1) as f64, values }
+        HeldOut { missing, values }
     }
 }
 

@@ -115,7 +115,7 @@ fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, 
     Some(outcome)
 }
 
-/// Share of the held-out density that a named term has to take, beside the others: half of what the search asks on its own rows.
+/// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.
 const LEAST_HELD_OUT_SHARE: f64 = 0.12;
 
 fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
@@ -169,13 +169,14 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
                 (less, left)
             })
             .collect();
-        let share = |left: &HeldOut| 1.0 - held.density / left.density.max(f64::MIN_POSITIVE);
+        let with = rms(&held.missing);
+        let share = |left: &HeldOut| 1.0 - (with / rms(&left.missing).max(f64::MIN_POSITIVE)).powi(2);
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
         let carries =
             |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
         let needless = (0..without.len())
             .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
-        if let Some(nth) = needless.min_by(|a, b| without[*a].1.density.total_cmp(&without[*b].1.density)) {
+        if let Some(nth) = needless.min_by(|a, b| rms(&without[*a].1.missing).total_cmp(&rms(&without[*b].1.missing))) {
             fit = without[nth].0.clone();
             continue;
         }
