@@ -21,6 +21,7 @@ pub mod interval;
 pub mod law;
 pub mod links;
 pub mod matrix;
+pub mod median;
 pub mod model;
 pub mod named;
 pub mod noise;

@@ -13,14 +13,3 @@ pub struct NamedTerm {
     /// What the law leaves without it, N or N m in root mean square on held-out rows.
     pub without: f64,
 }
-
-/// A term tried alone.
-#[derive(Debug, Clone, Copy)]
-pub struct Single {
-    /// Its name.
-    pub name: &'static str,
-    /// Share of the unexplained power that it takes, rows of its fit.
-    pub share: f64,
-    /// Likelihood-ratio test of it, for itself.
-    pub p_value: f64,
-}

@@ -12,7 +12,7 @@ use super::model::index;
 use super::nominal::{NominalContact, law_of, nominal_fit};
 use super::selection::{Chosen, Search};
 use super::trial::ContactTrial;
-use crate::diagnose::evidence::{NamedTerm, Single};
+use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::diagnose::verdict::Verdict;
 use crate::recording::Recording;
@@ -54,8 +54,6 @@ pub struct Outcome {
     pub alternatives: Vec<Alternative>,
     /// For what is left beside what is named: a learned element, where unseen rows pay for one.
     pub learned: Option<LearnedCurve>,
-    /// Every effect tried alone, the strongest first.
-    pub singles: Vec<Single>,
     /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects, on rows that no fit saw, a
     /// column a trial.
     pub residuals: [Vec<Vec<f64>>; 3],
@@ -146,7 +144,6 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         intervals: intervals(data, &fit, &rest, &improved.values),
         alternatives: alternatives(search, &folds, &fit, &chosen, &refitted),
         named,
-        singles: singles(search, &chosen),
         residuals: [given_residual, refitted.residual, improved.residual],
         expected_noise: data.expected_noise(),
         chosen: fit,
@@ -203,28 +200,6 @@ fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, 
 /// Values that are fitted in `more` and not in `less`.
 fn added_values(more: &Fit, less: &Fit) -> usize {
     more.model.free_count().saturating_sub(less.model.free_count())
-}
-
-fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
-    let expected = search.coarse.expected();
-    let before = search.coarse.fit(&search.nominal.model, &search.nominal.values, Effort::QUICK);
-    let rest = Rest::of(&search.coarse, &before);
-    let mut all: Vec<Single> = Vec::new();
-    for fit in &chosen.singles {
-        let Some(term) = fit.model.terms.get(search.nominal.model.terms.len()) else { continue };
-        if all.iter().any(|single| single.name == term.name()) {
-            continue;
-        }
-        let taken = before.energy - fit.energy;
-        let gain = 0.5 * (taken / (rest.power * rest.correlated_rows));
-        all.push(Single {
-            name: term.name(),
-            share: (taken / (before.energy - expected).max(taken.abs()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0),
-            p_value: likelihood_ratio_p(gain, added_values(fit, &before)),
-        });
-    }
-    all.sort_by(|a, b| b.share.total_cmp(&a.share));
-    all
 }
 
 /// Alternatives that are told.

@@ -22,12 +22,10 @@ pub struct Search<'a> {
     pub nominal: Fit,
 }
 
-/// What was chosen, and what was tried on the way.
+/// What was chosen, and the sets that it was chosen from.
 pub struct Chosen {
     /// The law with its effects.
     pub fit: Fit,
-    /// Every effect alone beside the nominal law, the best first.
-    pub singles: Vec<Fit>,
     /// Every set that was fitted in full.
     pub sets: Vec<Fit>,
 }
@@ -145,16 +143,13 @@ impl Search<'_> {
     pub fn run(&mut self, say: &dyn Fn(&str)) -> Chosen {
         let mut best = self.nominal.clone();
         let mut beam = vec![best.clone()];
-        let (mut singles, mut sets): (Vec<Fit>, Vec<Fit>) = (Vec::new(), Vec::new());
+        let mut sets: Vec<Fit> = Vec::new();
         let mut waiting = 0;
         for round in 0..MOST_TERMS + 1 {
             say(&format!("the contact: {round} effects and one more"));
             let mut grown: Vec<Fit> = Vec::new();
             for base in &beam {
                 let quick = self.grown(base);
-                if round == 0 {
-                    singles.clone_from(&quick);
-                }
                 grown.extend(self.polished(quick));
             }
             grown.retain(|fit| !fit.model.is_at_end(&fit.values));
@@ -190,7 +185,7 @@ impl Search<'_> {
         let fit = self.pruned(fit);
         sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         let fit = self.simplest(fit, &sets);
-        Chosen { fit, singles, sets }
+        Chosen { fit, sets }
     }
 
     /// Takes each row for what `best` makes of the motion's uncertainty, and for what it leaves: an inertia shows errors of the

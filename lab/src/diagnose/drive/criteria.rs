@@ -15,6 +15,10 @@ pub const BLOCK_S: f64 = 0.5;
 /// Fewest rows of a block.
 pub const BLOCK_ROWS: usize = 20;
 
+/// Comparisons of a larger model with a smaller one that a search makes, rounded up to a number that all recordings share: some fifteen
+/// terms for each of four places. Levels of tests are multiplied by it (Bonferroni).
+pub const COMPARISONS: f64 = 60.0;
+
 /// Share of the unexplained power that a term has to take: a quarter, 13 % of its root mean square. Chosen: textbook laws differ
 /// from real friction by less, and at a fifth a drive with nothing missing was alarmed.
 pub const LEAST_SHARE: f64 = 0.25;

@@ -4,7 +4,9 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::criteria::{CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_VUONG, MOST_LEFT, UNKNOWN_PART_OF_EFFORT};
+use super::criteria::{
+    COMPARISONS, CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_VUONG, MOST_LEFT, UNKNOWN_PART_OF_EFFORT,
+};
 use super::filter::innovations;
 use super::fit::{Data, Fit};
 use super::held_out::{Folds, HeldOut, missing_force, rms};
@@ -17,7 +19,7 @@ use super::outside_force::{Stretch, outside_forces};
 use super::selection::{Chosen, Search};
 use super::term::Term;
 use super::trial::DriveTrial;
-use crate::diagnose::evidence::{NamedTerm, Single};
+use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::diagnose::verdict::Verdict;
 
@@ -48,8 +50,6 @@ pub struct Outcome {
     pub named: Vec<NamedTerm>,
     /// What else would do.
     pub alternatives: Vec<Alternative>,
-    /// Every term tried alone, the strongest first.
-    pub singles: Vec<Single>,
     /// Missing force by the rig file as given, by refitted values, and with the named terms, a column a trial.
     pub missing: [Vec<Vec<f64>>; 3],
     /// What the sensors alone would show as missing force, N or N m in root mean square.
@@ -139,7 +139,6 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         intervals,
         named,
         alternatives,
-        singles: singles(search, &chosen),
         missing: [given, refitted.missing, improved.missing],
         expected_noise,
         band_hz: search.band_hz,
@@ -162,30 +161,29 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
     loop {
         let held = folds.held_out(&search.data, &fit, common);
         let first = search.nominal.model.terms.len();
-        let without: Vec<(Fit, HeldOut)> = (first..fit.model.terms.len())
+        let without: Vec<(Fit, f64)> = (first..fit.model.terms.len())
             .map(|at| {
                 let less = without(search, &fit, at);
-                let left = folds.held_out(&search.data, &less, common);
+                let left = rms(&folds.held_out(&search.data, &less, common).missing);
                 (less, left)
             })
             .collect();
         let with = rms(&held.missing);
-        let share = |left: &HeldOut| 1.0 - (with / rms(&left.missing).max(f64::MIN_POSITIVE)).powi(2);
+        let share = |left: f64| 1.0 - (with / left.max(f64::MIN_POSITIVE)).powi(2);
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
         let carries =
             |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
         let needless = (0..without.len())
-            .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
-        if let Some(nth) = needless.min_by(|a, b| rms(&without[*a].1.missing).total_cmp(&rms(&without[*b].1.missing))) {
+            .filter(|nth| share(without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
+        if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
             fit = without[nth].0.clone();
             continue;
         }
-        let tried = 15.0;
         let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
             at: first + nth,
-            held_out_share: share(left).clamp(0.0, 1.0),
-            p_value: (tried * p_value(&fit, less)).min(1.0),
-            without: rms(&left.missing),
+            held_out_share: share(*left).clamp(0.0, 1.0),
+            p_value: (COMPARISONS * p_value(&fit, less)).min(1.0),
+            without: *left,
         });
         let named = named.collect();
         return (fit, held, named);
@@ -203,21 +201,6 @@ fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
 /// Likelihood-ratio test of `more` against `less`.
 fn p_value(more: &Fit, less: &Fit) -> f64 {
     likelihood_ratio_p(more.log_likelihood - less.log_likelihood, more.values.len().saturating_sub(less.values.len()))
-}
-
-fn singles(search: &Search<'_>, chosen: &Chosen) -> Vec<Single> {
-    let before = search.unexplained(&search.nominal).powi(2);
-    let mut all: Vec<Single> = Vec::new();
-    for fit in &chosen.singles {
-        let Some(term) = fit.model.terms.last() else { continue };
-        if all.iter().any(|single| single.name == term.name()) {
-            continue;
-        }
-        let share = 1.0 - search.unexplained(fit).powi(2) / before.max(f64::MIN_POSITIVE);
-        all.push(Single { name: term.name(), share: share.clamp(-1.0, 1.0), p_value: p_value(fit, &search.nominal) });
-    }
-    all.sort_by(|a, b| b.share.total_cmp(&a.share));
-    all
 }
 
 /// Alternatives that are told.

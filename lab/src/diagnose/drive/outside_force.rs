@@ -12,6 +12,7 @@ use rand_chacha::ChaCha12Rng;
 
 use super::input::Inputs;
 use super::law::DriveLaw;
+use super::median::median;
 use super::term::Scales;
 use super::trial::DriveTrial;
 
@@ -74,7 +75,7 @@ pub fn outside_forces(trials: &[DriveTrial], missing: &[Vec<f64>], law: &DriveLa
         return Vec::new();
     }
     let Some(residual) = trimmed_residual(&blocks) else { return Vec::new() };
-    let deviation = median(residual.iter().map(|rest| rest.abs()).collect()) / 0.6745;
+    let deviation = median(residual.iter().map(|rest| rest.abs())).unwrap_or(0.0) / 0.6745;
     let is_far: Vec<bool> = residual.iter().map(|rest| rest.abs() > FAR * deviation).collect();
     let squares = |wanted: bool| -> f64 {
         residual.iter().zip(&is_far).filter(|(_, far)| **far || !wanted).map(|(rest, _)| rest * rest).sum()
@@ -188,11 +189,6 @@ fn stretches(blocks: &[Block], is_far: &[bool]) -> Vec<Stretch> {
         }
     }
     found
-}
-
-fn median(mut all: Vec<f64>) -> f64 {
-    let middle = all.len() / 2;
-    if all.is_empty() { 0.0 } else { *all.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]

@@ -26,12 +26,10 @@ pub struct Search<'a> {
     pub sides: Vec<Side>,
 }
 
-/// What was chosen, and what was tried on the way.
+/// What was chosen, and the sets that it was chosen from.
 pub struct Chosen {
     /// The model with its terms.
     pub fit: Fit,
-    /// Every single term beside the nominal law, the most likely first.
-    pub singles: Vec<Fit>,
     /// Every set that was fitted in full.
     pub sets: Vec<Fit>,
 }
@@ -115,7 +113,7 @@ impl Search<'_> {
     pub fn run(&self, say: &dyn Fn(&str)) -> Chosen {
         let mut best = self.nominal.clone();
         let mut beam = vec![best.clone()];
-        let (mut singles, mut sets) = (Vec::new(), Vec::new());
+        let mut sets = Vec::new();
         let mut link_searches = 0;
         let is_negligible = self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort;
         for round in 0..if is_negligible { 0 } else { MOST_TERMS } {
@@ -123,9 +121,6 @@ impl Search<'_> {
             let mut grown: Vec<Fit> = Vec::new();
             for base in &beam {
                 let mut quick = self.quickly_grown(base);
-                if round == 0 {
-                    singles.clone_from(&quick);
-                }
                 quick.truncate(POLISHED);
                 grown.extend(quick.iter().map(|quick| self.polished(quick)));
             }
@@ -152,7 +147,7 @@ impl Search<'_> {
         }
         say("the drive: without each term");
         let fit = self.with_believed_inertia(self.pruned(best), &sets);
-        Chosen { fit, singles, sets: distinct_all(sets) }
+        Chosen { fit, sets: distinct_all(sets) }
     }
 
     /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.

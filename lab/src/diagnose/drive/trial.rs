@@ -1,5 +1,6 @@
 //! A recording as the drive's model sees it: encoder rows, and the signals that act between them.
 
+use super::median::median;
 use super::noise::white_variance;
 
 /// One trial. Encoder rows may be fewer than the recorded ones; effort and force keep every recorded row.
@@ -40,7 +41,7 @@ impl DriveTrial {
         let every = every.max(1);
         let time: Vec<f64> = source_time.iter().step_by(every).copied().collect();
         let position: Vec<f64> = position.iter().step_by(every).copied().collect();
-        let period_s = median(time.windows(2).map(|pair| pair[1] - pair[0]).collect());
+        let period_s = median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(1.0);
         let restart =
             (0..time.len()).map(|row| row == 0 || time[row] - time[row - 1] > GAP_PERIODS * period_s).collect();
         Self { name, time, position, restart, period_s, source_time, effort, force }
@@ -134,14 +135,6 @@ impl DriveTrial {
             Some(*since)
         })
     }
-}
-
-fn median(mut all: Vec<f64>) -> f64 {
-    if all.is_empty() {
-        return 1.0;
-    }
-    let middle = all.len() / 2;
-    *all.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]
