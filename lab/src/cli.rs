@@ -12,6 +12,7 @@ use crate::completions::{self, CompletionsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
 use crate::export::{self, ExportArgs};
+use crate::interrupt;
 use crate::investigate::trial_of_method::{self, InvestigateChallengeArgs};
 use crate::investigate::{self, InvestigateArgs};
 use crate::listen::{self, ListenArgs};
@@ -21,6 +22,7 @@ use crate::replay::{self, ReplayArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::schema::{self, SchemaArgs};
 use crate::simulate::{self, SimulateArgs};
+use crate::terminal;
 
 /// Stiffness and damping of what a tool touches: identified from recordings, on the host or on the drive's processor.
 #[derive(Debug, Parser)]
@@ -67,6 +69,10 @@ enum Command {
 /// Runs the command line; 0 done, 1 the input or a file is at fault, 2 the command line is.
 #[must_use]
 pub fn run() -> ExitCode {
+    // Without a handler a signal ends the process as everywhere: only temporary files would stay.
+    if let Err(error) = interrupt::take_over() {
+        eprintln!("note: {error}");
+    }
     ExitCode::from(run_with(std::env::args_os()))
 }
 
@@ -101,7 +107,7 @@ pub fn run_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>
     match done {
         Ok(()) => 0,
         Err(error) => {
-            eprintln!("palpate: {error:#}");
+            eprintln!("palpate: {}", terminal::printable(&format!("{error:#}")));
             if error.is::<UsageError>() { 2 } else { 1 }
         }
     }

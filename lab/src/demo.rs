@@ -129,7 +129,7 @@ fn explained(rig: &Path, trials: &[PathBuf], out: &Path) -> Result<PathBuf> {
 fn show(device: Option<&Runner>, rig_path: &Path, trial: &Path, out: &Path) -> Result<PathBuf> {
     let rig = Rig::read(rig_path)?;
     let options = Options::default();
-    let outputs = Outputs::open(out, &[trial.to_path_buf()])?;
+    let outputs = Outputs::open(out, rig_path, &[trial.to_path_buf()])?;
     let run = |runner| replay(runner, &rig, rig_path, Recording::read(trial, &rig)?, &options);
     let host = run(&Runner::Host)?;
     let device = device.map(run).transpose()?;

@@ -23,6 +23,7 @@ pub mod verdict;
 use anyhow::{Result, bail};
 
 pub use command::{DiagnoseArgs, run};
+use signals::pauses;
 pub use signals::prepare::sensed;
 
 use crate::effects::{self, Place};
@@ -65,6 +66,8 @@ pub fn diagnose(
     say: &dyn Fn(&str),
 ) -> Result<Found> {
     say("reading the sensors");
+    let divided = pauses::divided(trials, simulation);
+    let (trials, simulation) = (divided.trials.as_slice(), divided.simulation.as_slice());
     let uniform_trials = sensed(rig, origin, trials)?;
     let figures: Vec<Figures> = uniform_trials.iter().map(|trial| trial.figures).collect();
     let findings = check::check(rig, trials, &uniform_trials);
@@ -92,7 +95,7 @@ pub fn diagnose(
     let Some(((mut answer, pictures), improved)) = together(rig, contact.as_ref(), drive.as_ref()) else {
         bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
     };
-    answer.findings.splice(0..0, findings);
+    answer.findings.splice(0..0, findings.into_iter().chain(divided.finding));
     let alternatives = contact.as_ref().map(|contact| contact_report::alternative_rigs(&improved, contact));
     Ok(Found { answer, pictures, improved, alternatives: alternatives.unwrap_or_default() })
 }

@@ -18,7 +18,9 @@ use clap::{Args, ValueEnum};
 
 use crate::error::{InputError, UsageError};
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::rig::Rig;
+use crate::terminal::printable;
 use found_effect::FoundEffect;
 
 /// Write the physics that was found into your own simulation model
@@ -102,11 +104,13 @@ pub struct Exported {
 /// # Errors
 /// As [`export`], and an output that cannot be written.
 pub fn run(args: &ExportArgs) -> Result<()> {
-    refuse_own_input(args)?;
+    let out = args.out.as_deref().map(|path| ("--out", path));
+    output_paths::check(&[&args.improved, &args.into], out.as_slice())
+        .map_err(|_| UsageError::new("--out", "an input of this very run", "another file to write to"))?;
     let exported = export(args)?;
     // To standard error: standard output is for the model.
-    exported.notes.iter().for_each(|note| eprintln!("note: {note}"));
-    exported.refused.iter().for_each(|refused| eprintln!("left out: {refused}"));
+    exported.notes.iter().for_each(|note| eprintln!("note: {}", printable(note)));
+    exported.refused.iter().for_each(|refused| eprintln!("left out: {}", printable(&refused.to_string())));
     match &args.out {
         Some(path) => {
             let mut file = OutFile::create(path)?;
@@ -162,17 +166,4 @@ fn read_text(path: &Path) -> Result<String, InputError> {
         };
         InputError::new(path.display(), found, "a model that can be read")
     })
-}
-
-/// A slip on the command line must not cost a user a model.
-fn refuse_own_input(args: &ExportArgs) -> Result<(), UsageError> {
-    let Some(place) = args.out.as_ref().and_then(|out| std::fs::canonicalize(out).ok()) else { return Ok(()) };
-    let is_input = [&args.improved, &args.into]
-        .into_iter()
-        .any(|input| std::fs::canonicalize(input).is_ok_and(|input| input == place));
-    if is_input {
-        Err(UsageError::new("--out", "an input of this very run", "another file to write to"))
-    } else {
-        Ok(())
-    }
 }

@@ -5,9 +5,9 @@ mod feed;
 mod port;
 mod record;
 mod screen;
+mod tare;
 
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -25,6 +25,7 @@ pub use record::Taken;
 
 use crate::error::UsageError;
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use screen::Screen;
@@ -39,7 +40,7 @@ pub struct ListenArgs {
     #[arg(long, value_name = "N", default_value_t = BAUD)]
     pub baud: u32,
     /// Leave after so many seconds; until Ctrl-C where it is left out
-    #[arg(long = "for", value_name = "SECONDS")]
+    #[arg(long = "for", value_name = "SECONDS", allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Choose the estimator
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Method::ALL.map(Method::name)).map(|name| method(&name)))]
@@ -94,12 +95,16 @@ const DISPLAY_PERIOD_TICKS: u16 = 50;
 /// # Errors
 /// The port or a file cannot be opened, the drive does not answer, or refuses a command.
 pub fn run(args: &ListenArgs) -> Result<()> {
+    if let Some(record) = args.record.as_ref().filter(|path| path.extension().is_none_or(|end| end != "toml")) {
+        let inputs: Vec<&Path> = args.feed.iter().chain(&args.rig).map(PathBuf::as_path).collect();
+        let rig = record.with_extension("toml");
+        output_paths::check(&inputs, &[("--record", record), ("--record", &rig)])?;
+    }
     let files = args.record.as_ref().map(|path| Ok::<_, anyhow::Error>((OutFile::create(path)?, rig_beside(path)?)));
     let files = files.transpose()?;
     let fed = args.feed.as_ref().map(|path| read_fed(path, args)).transpose()?;
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot take Ctrl-C over")?;
+    let duration = args.seconds.map(duration).transpose()?;
+    let stop = crate::interrupt::flag();
     let mut client = Client::new(open(&args.port, args.baud)?);
     client.wake()?;
     client.quiet()?;
@@ -113,15 +118,29 @@ pub fn run(args: &ListenArgs) -> Result<()> {
         recording: files.is_some(),
         calibration: about.calibration,
     };
+    if let (Some((recording, rig)), Some(path)) = (&fed, &args.feed) {
+        feed::check_turn(recording, &path.display().to_string(), rig, &about.calibration, &about.scale)?;
+    }
     let inputs = fed.as_ref().map(|(recording, rig)| inputs(recording, rig, &about.calibration, &about.scale));
     begin(&mut client, args, inputs.is_some())?;
-    let until = args.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.max(0.0)));
-    session.listen(&mut client, inputs.unwrap_or_default(), until, &stop)?;
-    end(&mut client, args, &mut session)?;
-    if let Some((file, rig)) = files {
-        session.taken.write(file, rig, &about.calibration, &settings)?;
+    let until = duration.and_then(|duration| Instant::now().checked_add(duration));
+    let heard = session.listen(&mut client, inputs.unwrap_or_default(), until, &stop);
+    let ended = heard.and_then(|()| end(&mut client, args, &mut session));
+    let Some((file, rig)) = files else { return ended };
+    if ended.is_err() && session.taken.is_empty() {
+        return ended;
     }
-    Ok(())
+    // Whatever went wrong on the way: what was recorded until then is kept.
+    session.taken.write(file, rig, &about.calibration, &settings)?;
+    ended.with_context(|| format!("{} samples are recorded until then", session.taken.len()))
+}
+
+/// As long as `seconds`; longer than any clock runs is for ever.
+fn duration(seconds: f64) -> Result<Duration, UsageError> {
+    if seconds.is_nan() || seconds < 0.0 {
+        return Err(UsageError::new("--for", seconds, "seconds, zero or more"));
+    }
+    Ok(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX))
 }
 
 fn rig_beside(path: &std::path::Path) -> Result<OutFile> {
@@ -156,14 +175,14 @@ fn new_settings(client: &mut Client, args: &ListenArgs, before: Settings) -> Res
 }
 
 fn orders(client: &mut Client, args: &ListenArgs) -> Result<()> {
-    for (asked, order, what) in [
-        (args.acknowledge, Order::Acknowledge, "the acknowledgement"),
-        (args.tare, Order::Tare, "the tare"),
-        (args.reset, Order::Restart, "the reset"),
-    ] {
-        if asked {
-            client.demand(Command::Order(order), what)?;
-        }
+    if args.acknowledge {
+        client.demand(Command::Order(Order::Acknowledge), "the acknowledgement")?;
+    }
+    if args.tare {
+        tare::tare(client)?;
+    }
+    if args.reset {
+        client.demand(Command::Order(Order::Restart), "the reset")?;
     }
     Ok(())
 }

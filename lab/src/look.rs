@@ -10,6 +10,7 @@ use anyhow::Result;
 use clap::Args;
 
 use crate::recording::data_file::DataFile;
+use crate::terminal::printable;
 use channel_summary::ChannelSummary;
 
 /// List what a recording holds: columns or topics, rates, ranges and gaps
@@ -30,7 +31,7 @@ pub struct LookArgs {
 pub fn run(args: &LookArgs) -> Result<()> {
     let file = DataFile::read(&args.file)?;
     let text = if args.rig_template { rig_template::text(&file, &args.file) } else { listing(&file) };
-    Ok(std::io::stdout().write_all(text.as_bytes())?)
+    Ok(std::io::stdout().write_all(printable(&text).as_bytes())?)
 }
 
 /// A line a channel.

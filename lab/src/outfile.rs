@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::error::InputError;
+use crate::interrupt::Temporary;
 
 /// An output file: written beside its place, moved there by [`OutFile::commit`]. Dropped before that, it leaves nothing.
 ///
@@ -17,7 +18,7 @@ pub struct OutFile {
 }
 
 enum Sink {
-    Beside(BufWriter<NamedTempFile>),
+    Beside(BufWriter<NamedTempFile>, Temporary),
     /// A pipe or a device: nothing can be moved over it.
     Straight(BufWriter<File>),
 }
@@ -40,9 +41,9 @@ impl OutFile {
             // A file that may not be written is not replaced behind its owner's back.
             Ok(_) => {
                 File::options().append(true).open(path).map_err(fault)?;
-                Sink::Beside(BufWriter::new(beside(path).map_err(fault)?))
+                sink_beside(path).map_err(fault)?
             }
-            Err(_) => Sink::Beside(BufWriter::new(beside(path).map_err(fault)?)),
+            Err(_) => sink_beside(path).map_err(fault)?,
         };
         Ok(Self { path: path.to_owned(), sink })
     }
@@ -55,7 +56,7 @@ impl OutFile {
         let fault = |error: io::Error| unwritable(&self.path, &error);
         match self.sink {
             Sink::Straight(mut file) => file.flush().map_err(fault),
-            Sink::Beside(file) => {
+            Sink::Beside(file, _removed_by_a_signal) => {
                 let file = file.into_inner().map_err(|error| fault(error.into_error()))?;
                 // A symbolic link keeps pointing where it did: its target is replaced, not the link.
                 let place = std::fs::canonicalize(&self.path).unwrap_or_else(|_| self.path.clone());
@@ -75,17 +76,23 @@ impl OutFile {
 impl Write for OutFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.sink {
-            Sink::Beside(file) => file.write(bytes),
+            Sink::Beside(file, _) => file.write(bytes),
             Sink::Straight(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.sink {
-            Sink::Beside(file) => file.flush(),
+            Sink::Beside(file, _) => file.flush(),
             Sink::Straight(file) => file.flush(),
         }
     }
+}
+
+fn sink_beside(path: &Path) -> io::Result<Sink> {
+    let file = beside(path)?;
+    let removed = Temporary::new(file.path());
+    Ok(Sink::Beside(BufWriter::new(file), removed))
 }
 
 fn beside(path: &Path) -> io::Result<NamedTempFile> {

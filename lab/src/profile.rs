@@ -25,6 +25,7 @@ pub use figures::Figures;
 pub use interrupt::{InterruptCost, interrupt_costs};
 
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::qemu_bench;
 use crate::tools::{self, Leave, TARGET};
 use calls::Calls;
@@ -168,6 +169,9 @@ pub fn drive_image() -> Result<PathBuf> {
 /// # Errors
 /// A tool is missing, the image fails, the two counts disagree, or an output cannot be written.
 pub fn run(args: &ProfileArgs) -> Result<()> {
+    let outputs = [("--json", &args.json), ("--listing", &args.listing)];
+    let outputs: Vec<_> = outputs.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?))).collect();
+    output_paths::check(&[], &outputs)?;
     let listing = args.listing.as_deref().map(OutFile::create).transpose()?;
     let json = args.json.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()?;
     let profile = Profile::take(Leave::Install)?;

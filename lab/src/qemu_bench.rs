@@ -13,6 +13,7 @@ use palpate_drive::replay_format::{
     encode_sample, record_bytes,
 };
 
+use crate::interrupt::{Process, Temporary};
 use crate::tools::{self, Leave};
 
 /// An image that takes no record for this long is given up.
@@ -46,6 +47,7 @@ impl QemuBench {
         mut take: impl FnMut(UpdateResult),
     ) -> Result<ReplayCounters> {
         let folder = tempfile::tempdir().context("cannot make a folder for the image's files")?;
+        let _removed_by_a_signal = Temporary::new(folder.path());
         write_input(&folder.path().join("replay.in"), config, samples).context("cannot write the image's input")?;
         let output = folder.path().join("replay.out");
         let size = record_bytes(config.methods);
@@ -77,6 +79,7 @@ impl QemuBench {
             .stderr(Stdio::piped())
             .spawn()
             .with_context(|| format!("cannot run {}", self.qemu.display()))?;
+        let _ended_by_a_signal = Process::new(&child);
         let done = wait(&mut child, output, grown);
         if done.is_err() {
             // Killing fails only where it has ended by itself.

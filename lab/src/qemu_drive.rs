@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
 
+use crate::interrupt::{Process, Temporary};
 use crate::listen::{Client, open};
 use crate::qemu_bench;
 use crate::tools::{self, Leave};
@@ -27,6 +28,8 @@ pub enum ClockMode {
 pub struct QemuDrive {
     child: Child,
     folder: tempfile::TempDir,
+    /// Whoever ends the tool by a signal leaves no emulator behind.
+    _registered: (Process, Temporary),
 }
 
 /// The image and the emulator that runs it.
@@ -78,7 +81,8 @@ impl DriveImage {
             .stderr(Stdio::inherit())
             .spawn()
             .with_context(|| format!("cannot run {}", self.qemu.display()))?;
-        let mut drive = QemuDrive { child, folder };
+        let registered = (Process::new(&child), Temporary::new(folder.path()));
+        let mut drive = QemuDrive { child, folder, _registered: registered };
         drive.wait()?;
         Ok(drive)
     }

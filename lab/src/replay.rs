@@ -19,6 +19,7 @@ use crate::error::InputError;
 use crate::qemu_bench::QemuBench;
 use crate::recording::Recording;
 use crate::rig::Rig;
+use crate::terminal::printable;
 use crate::tools::Leave;
 pub use options::{LossChoice, Options, VelocityChoice};
 pub use outputs::Outputs;
@@ -80,7 +81,7 @@ impl Replayed {
 /// A file or the command line is at fault, or the device fails.
 pub fn run(args: &ReplayArgs) -> Result<()> {
     let rig = Rig::read(&args.rig)?;
-    let outputs = args.out.as_deref().map(|folder| Outputs::open(folder, &args.trials)).transpose()?;
+    let outputs = args.out.as_deref().map(|folder| Outputs::open(folder, &args.rig, &args.trials)).transpose()?;
     let recordings = args.trials.iter().map(|path| Recording::read(path, &rig));
     let recordings = recordings.collect::<Result<Vec<_>, InputError>>()?;
     let runner = Runner::prepare(args.on)?;
@@ -89,7 +90,9 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
         replayed.push(replay(&runner, &rig, &args.rig, recording, &args.options)?);
     }
     for one in &replayed {
-        one.notices().iter().for_each(|notice| eprintln!("{}: {notice}", one.recording.name));
+        one.notices()
+            .iter()
+            .for_each(|notice| eprintln!("{}", printable(&format!("{}: {notice}", one.recording.name))));
     }
     table::print(&rig, &replayed)?;
     if let (Some(outputs), Some(folder)) = (outputs, &args.out) {

@@ -11,15 +11,17 @@ mod trial;
 
 pub use trial::{CommandSource, Measurement};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::Args;
 
 use crate::error::InputError;
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::recording::Recording;
 use crate::rig::Rig;
+use crate::terminal::printable;
 
 /// Simulate the rig and write the trial as a recording
 #[derive(Debug, Clone, Args)]
@@ -62,24 +64,15 @@ pub fn run(args: SimulateArgs) -> anyhow::Result<()> {
         }
         (rig, origin) = (model, path);
     }
-    refuse_own_input(&args)?;
+    let inputs: Vec<&Path> = std::iter::once(&args.rig).chain(&args.model).map(PathBuf::as_path).collect();
+    output_paths::check(&inputs, &[("--out", &args.out)])?;
     let file = OutFile::create(&args.out)?;
     let trial = simulate(&rig, args.seed, &origin.display().to_string())?;
     for notice in &trial.notices {
-        eprintln!("{notice}");
+        eprintln!("{}", printable(notice));
     }
     trial.recording.write_to(file, &rig)?;
     Ok(())
-}
-
-/// A slip on the command line must not cost a user the rig file.
-fn refuse_own_input(args: &SimulateArgs) -> Result<(), InputError> {
-    let Ok(out) = std::fs::canonicalize(&args.out) else { return Ok(()) };
-    let mut inputs = std::iter::once(&args.rig).chain(&args.model);
-    match inputs.find(|input| std::fs::canonicalize(input).is_ok_and(|input| input == out)) {
-        Some(_) => Err(InputError::new(args.out.display(), "an input of this very run", "another file to write to")),
-        None => Ok(()),
-    }
 }
 
 /// Simulates `rig`; `origin` names its file in errors.

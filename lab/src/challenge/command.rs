@@ -12,6 +12,7 @@ use super::recordings::table::{section, table};
 use super::{page, protocol, summary};
 use crate::error::{InputError, UsageError};
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::qemu_bench::project;
 
 /// Put the diagnosis to recordings whose missing effect is concealed from it
@@ -63,6 +64,10 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
     let folders = args.source.iter().any(|source| matches!(source, CaseSource::Folder(_)));
     let expected = "at least one, or real recordings, or a folder of cases";
     ensure!(args.cases > 0 || real || folders, UsageError::new("--cases", 0, expected));
+    let outputs = [("--json", &args.json), ("--report", &args.report)];
+    let outputs: Vec<_> = outputs.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?))).collect();
+    // A score may be written anew over itself: it is read as a whole before.
+    output_paths::check(&[], &outputs)?;
     let open = |path: &Option<PathBuf>| {
         path.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()
     };

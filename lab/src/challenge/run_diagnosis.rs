@@ -7,6 +7,7 @@ use std::time::Instant;
 use anyhow::{Context as _, Result};
 
 use super::diagnosis_json::{DiagnosisJson, SCHEMA};
+use crate::interrupt;
 
 /// Where the command leaves its answer.
 const ANSWER_FILE: &str = "diagnosis.json";
@@ -22,14 +23,13 @@ pub fn run_diagnosis(tool: &Path, folder: &Path, arguments: &[&str]) -> Result<(
         std::fs::remove_file(&answer).with_context(|| format!("cannot remove {}", answer.display()))?;
     }
     let start = Instant::now();
-    let output = Command::new(tool)
+    let mut command = Command::new(tool);
+    command
         .args(["diagnose", "--rig", "rig.toml", "--json", ANSWER_FILE])
         .args(arguments)
         .current_dir(folder)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .output()
-        .with_context(|| format!("cannot run {}", tool.display()))?;
+        .stdin(Stdio::null());
+    let output = interrupt::output(&mut command).with_context(|| format!("cannot run {}", tool.display()))?;
     let seconds = start.elapsed().as_secs_f64();
     let diagnosis = if output.status.success() {
         read_answer(&answer)

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::case_result::CaseResult;
 use super::commitment::{Commitment, CommittedCase};
 use crate::error::InputError;
+use crate::interrupt::Temporary;
 
 /// Everything that decides what a run is. A folder belongs to one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,7 +46,7 @@ struct Committed {
 pub struct WorkFolder {
     path: PathBuf,
     /// Removed with everything in it where nobody asked to keep it.
-    temporary: Option<tempfile::TempDir>,
+    temporary: Option<(tempfile::TempDir, Temporary)>,
 }
 
 impl WorkFolder {
@@ -56,7 +57,9 @@ impl WorkFolder {
     pub fn open(path: Option<&Path>, settings: &Settings) -> Result<Self> {
         let Some(path) = path else {
             let temporary = tempfile::tempdir().context("no folder for the recordings can be made")?;
-            return Ok(Self { path: temporary.path().to_owned(), temporary: Some(temporary) });
+            let path = temporary.path().to_owned();
+            let removed = Temporary::new(&path);
+            return Ok(Self { path, temporary: Some((temporary, removed)) });
         };
         fs::create_dir_all(path).with_context(|| format!("cannot make {}", path.display()))?;
         let folder = Self { path: path.to_owned(), temporary: None };

@@ -17,9 +17,11 @@ use crate::diagnose::report::model_file::model_file;
 use crate::error::{InputError, UsageError};
 use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::page::quantity;
 use crate::recording::Recording;
 use crate::rig::Rig;
+use crate::terminal::printable;
 
 /// Find where simulation and recordings differ, and which physics is missing
 #[derive(Debug, Clone, Args)]
@@ -61,7 +63,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         let expected = format!("one a trial, {} in all", args.trials.len());
         bail!(UsageError::new("--simulation", format!("{} files", args.simulation.len()), expected));
     }
-    refuse_own_input(args)?;
+    check_outputs(args)?;
     let read = |paths: &[PathBuf]| paths.iter().map(|path| Recording::read(path, &rig)).collect::<Result<Vec<_>, _>>();
     let (trials, simulation) = (read(&args.trials)?, read(&args.simulation)?);
     args.simulation.iter().zip(&simulation).zip(&trials).try_for_each(|((path, run), trial)| fits(path, run, trial))?;
@@ -104,7 +106,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     let experiment = args.experiment.as_ref().filter(|_| is_designed);
     for path in [args.json.as_ref(), args.report.as_ref(), args.model.as_ref(), experiment].into_iter().flatten() {
         if path.as_os_str() != "-" {
-            eprintln!("wrote {}", path.display());
+            eprintln!("wrote {}", printable(&path.display().to_string()));
         }
     }
     Ok(())
@@ -171,17 +173,18 @@ fn fits(path: &Path, run: &Recording, trial: &Recording) -> Result<(), InputErro
     }
 }
 
-/// A slip on the command line must not cost a user a recording.
-fn refuse_own_input(args: &DiagnoseArgs) -> Result<(), InputError> {
+/// No file is read and written, and none is written twice.
+fn check_outputs(args: &DiagnoseArgs) -> Result<()> {
     let inputs: Vec<&Path> =
         std::iter::once(&args.rig).chain(&args.trials).chain(&args.simulation).map(PathBuf::as_path).collect();
-    for out in [&args.json, &args.report, &args.model, &args.experiment].into_iter().flatten() {
-        let Ok(place) = std::fs::canonicalize(out) else { continue };
-        if inputs.iter().any(|input| std::fs::canonicalize(input).is_ok_and(|input| input == place)) {
-            return Err(InputError::new(out.display(), "an input of this very run", "another file to write to"));
-        }
-    }
-    Ok(())
+    let outputs = [
+        ("--json", &args.json),
+        ("--report", &args.report),
+        ("--model", &args.model),
+        ("--experiment", &args.experiment),
+    ];
+    let given = outputs.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
+    output_paths::check(&inputs, &given.collect::<Vec<_>>())
 }
 
 fn commit(mut file: OutFile, bytes: &[u8]) -> Result<()> {
@@ -204,13 +207,14 @@ fn print(answer: &Diagnosis, text: &str, json_only: bool) -> Result<()> {
     let mut out = std::io::stdout().lock();
     if json_only {
         out.write_all(text.as_bytes())?;
-        eprint!("{}", told(answer));
+        eprint!("{}", printable(&told(answer)));
     } else {
-        out.write_all(told(answer).as_bytes())?;
+        out.write_all(printable(&told(answer)).as_bytes())?;
     }
     for finding in &answer.findings {
         let place = if finding.place.is_empty() { String::new() } else { format!("{}: ", finding.place) };
-        eprintln!("{}: {place}{}", if finding.grave { "warning" } else { "note" }, finding.text);
+        let kind = if finding.grave { "warning" } else { "note" };
+        eprintln!("{kind}: {}", printable(&format!("{place}{}", finding.text)));
     }
     Ok(())
 }

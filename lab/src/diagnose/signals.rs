@@ -4,5 +4,6 @@ pub mod dequantize;
 pub mod derivative_filter;
 pub mod mains_tone;
 pub mod outliers;
+pub mod pauses;
 pub mod prepare;
 pub mod uniform_trial;

@@ -261,6 +261,14 @@ pub mod mains_tone {
     pub const MIN_CYCLES: f64 = 40.0;
 }
 
+/// Of `signals/pauses`.
+pub mod pauses {
+    /// Time in gaps, over the time that rows hold, from which a trial is divided: the even clock has eleven times the rows at the most.
+    ///
+    /// Unit: 1; chosen.
+    pub const MAX_GAP_RATIO: f64 = 10.0;
+}
+
 /// Of `signals/prepare`.
 pub mod prepare {
     /// Fewest rows of a trial: below them no filter has settled.

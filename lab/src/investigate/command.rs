@@ -1,8 +1,6 @@
 //! The command line of `palpate investigate`.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context as _, Result};
 use clap::Args;
@@ -18,9 +16,11 @@ use super::simulated_bed::SimulatedBed;
 use super::test_bed::TestBed;
 use crate::experiment_design::Limits;
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::qemu_drive::DriveImage;
 use crate::recording::Recording;
 use crate::rig::Rig;
+use crate::terminal::printable;
 use crate::tools::Leave;
 
 /// Diagnose, design the trial that tells most, run it, and diagnose again, until one explanation is left
@@ -62,11 +62,16 @@ pub fn run(args: &InvestigateArgs) -> Result<()> {
         None => default_limits(&given)?,
     };
     std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make {}", args.out.display()))?;
+    let inputs: Vec<&Path> =
+        std::iter::once(&args.rig).chain(&args.trials).chain(&args.limits).map(PathBuf::as_path).collect();
+    let places = ["improved.toml", "report.html", super::record::FILE].map(|name| args.out.join(name));
+    let outputs: Vec<_> = places.iter().map(|place| ("--out", place.as_path())).collect();
+    output_paths::check(&inputs, &outputs)?;
     let mut bed = test_bed(&args.on, &rig, args.seed)?;
     let inputs = std::iter::once(&args.rig).chain(&args.trials).map(|path| sha256(path)).collect::<Result<_>>()?;
     let setup = Setup { inputs_sha256: inputs, on: args.on.clone(), limits, seed: args.seed };
     let mut investigation = Investigation::open(&args.out, setup)?;
-    let interrupted = interrupt_flag()?;
+    let interrupted = crate::interrupt::flag();
     let origin = args.rig.display().to_string();
     let session = Session {
         rig: &rig,
@@ -75,7 +80,7 @@ pub fn run(args: &InvestigateArgs) -> Result<()> {
         folder: &args.out,
         rounds: args.rounds,
         interrupted: &interrupted,
-        say: &|text| eprintln!("{text}"),
+        say: &|text| eprintln!("{}", printable(text)),
     };
     eprintln!("on {}", bed.description());
     let found = session.run(&mut investigation, bed.as_mut())?;
@@ -110,12 +115,4 @@ fn test_bed(on: &str, rig: &Rig, seed: u64) -> Result<Box<dyn TestBed>> {
 fn sha256(path: &Path) -> Result<String> {
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
-}
-
-/// A flag that Ctrl-C sets.
-fn interrupt_flag() -> Result<Arc<AtomicBool>> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let set = Arc::clone(&flag);
-    ctrlc::set_handler(move || set.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
-    Ok(flag)
 }

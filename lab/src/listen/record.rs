@@ -40,6 +40,18 @@ impl Taken {
         self.force.push(force.into());
     }
 
+    /// Samples so far.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ticks.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ticks.is_empty()
+    }
+
     /// The recording: time from the first sample, depth below the surface, force above its zero.
     #[must_use]
     pub fn recording(&self) -> Recording {

@@ -1,6 +1,7 @@
 //! What a person wants to know of a channel before choosing it.
 
 use crate::recording::data_file::{Channel, Content};
+use crate::terminal::printable;
 
 /// A pause as long as this many median periods is a gap.
 const GAP_PERIODS: f64 = 3.0;
@@ -19,7 +20,7 @@ pub struct ChannelSummary {
 impl ChannelSummary {
     /// Of `channel`, on its own clock or on that of the file's column of time, given by name and values.
     pub fn of(channel: &Channel, time: Option<(&str, &[f64])>) -> Self {
-        let name = channel.name.clone();
+        let name = printable(&channel.name);
         let values = match &channel.content {
             Content::Numbers(values) => values,
             Content::Other(what) => {
@@ -34,7 +35,7 @@ impl ChannelSummary {
             }
             clock.len() == values.len()
         });
-        let is_time = time.is_some_and(|(time, _)| time == name);
+        let is_time = time.is_some_and(|(time, _)| time == channel.name);
         let period = clock.and_then(median_period);
         // Gaps are told where the time is listed, or where every channel has its own.
         if let (Some(clock), Some(period)) = (clock, period)

@@ -10,6 +10,7 @@ use palpate_drive::replay_format::{CONFIG_BYTES, encode_config, encode_sample};
 use super::cycles::cost;
 use super::image::Image;
 use super::trial;
+use crate::interrupt::{self, Temporary};
 use crate::qemu_bench;
 
 /// Runs the image and hands out what it and the plugin wrote.
@@ -17,6 +18,7 @@ pub struct Emulator {
     qemu: PathBuf,
     counter: PathBuf,
     folder: tempfile::TempDir,
+    _removed_by_a_signal: Temporary,
 }
 
 impl Emulator {
@@ -31,7 +33,8 @@ impl Emulator {
         let mut input = encode_config(&trial::config(), &mut buffer).context("the settings do not fit")?.to_vec();
         input.extend(trial::samples()?.iter().flat_map(encode_sample));
         std::fs::write(folder.path().join("profile.in"), input).context("cannot write the image's input")?;
-        Ok(Self { qemu, counter, folder })
+        let _removed_by_a_signal = Temporary::new(folder.path());
+        Ok(Self { qemu, counter, folder, _removed_by_a_signal })
     }
 
     /// What the plugin counted: its file's text.
@@ -66,16 +69,16 @@ impl Emulator {
 
     fn run(&self, image: &Image, arguments: &[&str]) -> Result<()> {
         let path: &Path = &image.path;
-        let output = Command::new(&self.qemu)
+        let mut command = Command::new(&self.qemu);
+        command
             .args(["-machine", "netduinoplus2", "-display", "none", "-monitor", "none", "-serial", "none"])
             .args(["-semihosting-config", "enable=on,target=native"])
             .args(arguments)
             .arg("-kernel")
             .arg(path.canonicalize().with_context(|| format!("{} is gone", path.display()))?)
             .current_dir(self.folder.path())
-            .stdin(Stdio::null())
-            .output()
-            .with_context(|| format!("cannot run {}", self.qemu.display()))?;
+            .stdin(Stdio::null());
+        let output = interrupt::output(&mut command).with_context(|| format!("cannot run {}", self.qemu.display()))?;
         let said = String::from_utf8_lossy(&output.stderr);
         ensure!(output.status.success(), "the image gave up ({}): {}", output.status, said.trim());
         Ok(())

@@ -7,6 +7,7 @@ use anyhow::{Context as _, Result};
 use super::{Options, Place, Replayed, estimates};
 use crate::error::InputError;
 use crate::outfile::OutFile;
+use crate::output_paths;
 use crate::page::{Page, Trial, Units};
 use crate::rig::{Coordinate, Rig};
 
@@ -21,14 +22,14 @@ impl Outputs {
     /// several, and `replay.html`.
     ///
     /// # Errors
-    /// The place cannot be written.
-    pub fn open(folder: &Path, trials: &[PathBuf]) -> Result<Self> {
+    /// The place cannot be written, or is a file that is read.
+    pub fn open(folder: &Path, rig: &Path, trials: &[PathBuf]) -> Result<Self> {
         let make = |folder: &Path| {
             let what = || InputError::new(folder.display(), "a folder that cannot be made", "a writable place");
             std::fs::create_dir_all(folder).with_context(what)
         };
         make(folder)?;
-        let mut estimates = Vec::new();
+        let mut places = Vec::new();
         for (k, trial) in trials.iter().enumerate() {
             let place = match trials.len() {
                 1 => folder.to_path_buf(),
@@ -36,9 +37,14 @@ impl Outputs {
                 _ => folder.join(format!("{:02}-{}", k + 1, trial.file_stem().unwrap_or_default().display())),
             };
             make(&place)?;
-            estimates.push(OutFile::create(&place.join("estimates.csv"))?);
+            places.push(place.join("estimates.csv"));
         }
-        Ok(Self { estimates, page: OutFile::create(&folder.join("replay.html"))? })
+        let page = folder.join("replay.html");
+        let inputs: Vec<&Path> = trials.iter().map(PathBuf::as_path).chain([rig]).collect();
+        let outputs: Vec<_> = places.iter().chain([&page]).map(|place| ("--out", place.as_path())).collect();
+        output_paths::check(&inputs, &outputs)?;
+        let estimates = places.iter().map(|place| OutFile::create(place)).collect::<Result<_, _>>()?;
+        Ok(Self { estimates, page: OutFile::create(&page)? })
     }
 
     /// Writes what was replayed, whole or not at all.

@@ -6,6 +6,7 @@ use anyhow::Result;
 
 use super::Replayed;
 use crate::rig::Rig;
+use crate::terminal::printable;
 
 /// One line a trial and method.
 pub fn print(rig: &Rig, replayed: &[Replayed]) -> Result<()> {
@@ -22,7 +23,7 @@ pub fn print(rig: &Rig, replayed: &[Replayed]) -> Result<()> {
     )?;
     for r in replayed {
         for (method, summary) in r.trace.summaries(&r.plan.samples) {
-            let name = format!("{:<28} {:<12}", r.recording.name, method.name());
+            let name = format!("{:<28} {:<12}", printable(&r.recording.name), method.name());
             match summary {
                 None => writeln!(out, "{name} never known: no contact, or no movement in it")?,
                 Some(s) => {

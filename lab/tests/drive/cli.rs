@@ -61,6 +61,83 @@ fn listen_says_what_is_wrong() {
     assert!(text(&refused.stderr).contains("out of its range"), "{}", text(&refused.stderr));
 }
 
+/// A drive that is switched off in the middle of a recording: what was recorded until then is kept, and the status says that it ended early.
+#[test]
+fn a_recording_outlives_the_port_that_it_came_through() {
+    let Some(image) = image() else { return };
+    let drive = image.start(ClockMode::Exact, None, &[]).unwrap_or_else(|error| panic!("{error:#}"));
+    let folder = tempfile::tempdir().expect("a folder");
+    // Far longer than it may take to see the first estimate.
+    let (rig, recording) = bench(600.0);
+    let [rig_path, trial, out] = ["rig.toml", "trial.csv", "heard.csv"].map(|name| folder.path().join(name));
+    rig.write(&rig_path).expect("a rig file");
+    recording.write(&trial, &rig).expect("a trial");
+    let mut listen = palpate();
+    listen.args(["listen", "--port"]).arg(drive.socket()).arg("--feed").arg(&trial).arg("--rig").arg(&rig_path);
+    let mut child =
+        listen.arg("--record").arg(&out).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("palpate runs");
+    let mut shown = std::io::BufReader::new(child.stdout.take().expect("its output"));
+    for _ in 0..20 {
+        std::io::BufRead::read_line(&mut shown, &mut String::new()).expect("an estimate");
+    }
+    drop(drive);
+    let done = child.wait_with_output().expect("it ends");
+    assert_eq!(done.status.code(), Some(1));
+    assert!(text(&done.stderr).contains("samples are recorded until then"), "{}", text(&done.stderr));
+    let rows = std::fs::read_to_string(&out).expect("a recording").lines().count();
+    assert!(rows > 500 && rows < 600_000, "{rows}");
+    assert!(out.with_extension("toml").is_file());
+}
+
+/// A drive without sensors takes no good sample: the order is told as what it is.
+#[test]
+fn a_tare_that_is_not_carried_out_is_no_success() {
+    let Some(image) = image() else { return };
+    let drive = image.start(ClockMode::Exact, None, &[]).unwrap_or_else(|error| panic!("{error:#}"));
+    let mut tare = palpate();
+    let done = tare.args(["listen", "--tare", "--for", "0", "--port"]).arg(drive.socket()).output().expect("it runs");
+    assert_eq!(done.status.code(), Some(1), "{}", text(&done.stderr));
+    assert!(text(&done.stderr).contains("no tare: 0 good samples"), "{}", text(&done.stderr));
+}
+
+/// Whoever ends the tool by a signal leaves no emulator behind.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_ends_the_emulator_too() {
+    if image().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let (rig, recording) = bench(600.0);
+    let [rig_path, trial] = ["rig.toml", "trial.csv"].map(|name| folder.path().join(name));
+    rig.write(&rig_path).expect("a rig file");
+    recording.write(&trial, &rig).expect("a trial");
+    let mut replay = palpate();
+    replay.args(["replay", "--on", "qemu", "--rig"]).arg(&rig_path).arg(&trial).env("TMPDIR", folder.path());
+    let mut child = replay.stderr(Stdio::null()).stdout(Stdio::null()).spawn().expect("palpate runs");
+    let command_line = |process: &str| std::fs::read_to_string(format!("/proc/{process}/cmdline")).unwrap_or_default();
+    let emulator = loop {
+        assert!(child.try_wait().expect("a process").is_none(), "it ended before the emulator began");
+        let children = format!("/proc/{0}/task/{0}/children", child.id());
+        let children = std::fs::read_to_string(children).unwrap_or_default();
+        let found = children.split_whitespace().find(|process| command_line(process).contains("qemu-system-arm"));
+        if let Some(found) = found {
+            break found.to_owned();
+        }
+        std::thread::yield_now();
+    };
+    Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill runs");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    // It was ended before its parent was; the system takes a moment to clear it away.
+    while command_line(&emulator).contains("qemu-system-arm") {
+        std::thread::yield_now();
+    }
+    let left = std::fs::read_dir(folder.path()).expect("a folder").flatten();
+    let left: Vec<_> =
+        left.map(|file| file.file_name()).filter(|name| name != "rig.toml" && name != "trial.csv").collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
 /// A pseudo-terminal is a serial port to whoever opens it: the way that a board's is taken.
 #[cfg(target_os = "linux")]
 #[test]
