@@ -110,6 +110,13 @@ impl<'a> Recent<'a> {
         self.older.first().or(self.newer.first()).copied()
     }
 
+    /// The newest and the oldest one, where they stand.
+    #[inline(always)]
+    pub(crate) fn ends(&self) -> Option<(&'a Observation, &'a Observation)> {
+        let (newest, oldest) = (self.newer.last()?, self.newer.first()?);
+        Some((newest, self.older.first().unwrap_or(oldest)))
+    }
+
     /// The one `count` before the newest; the newest itself where that is zero.
     pub fn before_newest(&self, count: usize) -> Option<Observation> {
         let from_end = |run: &[Observation], count: usize| run.get(run.len().checked_sub(count + 1)?).copied();

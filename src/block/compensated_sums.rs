@@ -12,6 +12,7 @@
 //!   rebuilt about that solution from the ring, one older sample at each update, and then replaced.
 
 use crate::block::config::BlockConfig;
+use crate::block::fourth_order::{FourthOrderSums, QuarticSums};
 use crate::block::second_order::Moments;
 use crate::block::solution::Solution;
 use crate::block::window_sums::{CentredMoments, WindowSums};
@@ -94,7 +95,7 @@ impl<M: Moments> CompensatedSums<M> {
     /// A window that was not followed sample by sample: all of it, about `centre`.
     #[cold]
     #[inline(never)]
-    fn rebuild(&mut self, recent: Recent<'_>, centre: Impedance) {
+    fn rebuild(&mut self, recent: &Recent<'_>, centre: Impedance) {
         *self = Self::default();
         self.begin(centre);
         recent.for_each(|o| self.newer.add(o));
@@ -143,7 +144,7 @@ impl<M: Moments> CompensatedSums<M> {
 
     /// Adds the newest sample to what is rebuilt, and one more of the ring; two where the contact is young.
     #[inline(never)]
-    fn catch_up(&mut self, newest: &Observation, recent: Recent<'_>) {
+    fn catch_up(&mut self, newest: &Observation, recent: &Recent<'_>) {
         self.rebuilt.add(newest);
         self.caught_up += 1;
         let more = if self.fill < RECENTRE_INTERVAL { 2 } else { 1 };
@@ -201,7 +202,7 @@ fn better_centre<M: Moments>(run: &Run<M>, samples: u16, config: &BlockConfig) -
 impl<M: Moments> WindowSums for CompensatedSums<M> {
     type CentredMoments = M;
 
-    fn push(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
+    fn push(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) {
         let expected = if self.fill < config.window { self.fill + 1 } else { config.window };
         if self.fill == 0 || recent.len() != usize::from(expected) {
             self.rebuild(recent, estimate);
@@ -231,7 +232,7 @@ impl<M: Moments> WindowSums for CompensatedSums<M> {
         }
     }
 
-    fn centred_moments(&self, _: Recent<'_>, estimate: Impedance) -> CentredMoments<M> {
+    fn centred_moments(&self, _: &Recent<'_>, estimate: Impedance) -> CentredMoments<M> {
         CentredMoments { centre: estimate, moments: self.moments_about(estimate) }
     }
 }
@@ -248,6 +249,22 @@ impl<M: Moments> CompensatedSums<M> {
             moments = moments.with(&self.older.moments);
         }
         moments.shifted(estimate.moved(-1.0, self.newer.centre))
+    }
+}
+
+impl CompensatedSums<FourthOrderSums> {
+    /// The window's sums of fourth order about `estimate`, as [`Self::moments_about`] has them.
+    #[inline(never)]
+    pub fn quartic_about(&self, estimate: Impedance) -> QuarticSums {
+        let (older, newer) = (self.older.moments.quartic(), self.newer.moments.quartic());
+        let from_newer = estimate.moved(-1.0, self.newer.centre);
+        if self.covered >= self.fill {
+            return newer.shifted(from_newer);
+        }
+        if self.older.centre != self.newer.centre {
+            return older.shifted(estimate.moved(-1.0, self.older.centre)).with(&newer.shifted(from_newer));
+        }
+        newer.with(older).shifted(from_newer)
     }
 }
 
@@ -277,11 +294,11 @@ mod tests {
                     continue;
                 }
                 let mut sums = CompensatedSums::<SecondOrderSums>::default();
-                sums.push(&config, ring.recent().last(followed), Impedance::ZERO);
+                sums.push(&config, &ring.recent().last(followed), Impedance::ZERO);
                 let recent = ring.recent().last(length);
-                sums.push(&config, recent, estimate);
+                sums.push(&config, &recent, estimate);
                 let got = sums.moments_about(estimate);
-                assert_eq!(got, SecondOrderSums::over(recent, estimate), "{length} samples after {followed}");
+                assert_eq!(got, SecondOrderSums::over(&recent, estimate), "{length} samples after {followed}");
             }
         }
     }

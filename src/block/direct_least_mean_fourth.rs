@@ -62,8 +62,8 @@ impl BlockLeastMeanFourth {
 
     /// The line search from `estimate` over `recent`; `None` where the gradient is zero or nothing is excited.
     pub fn line_search(&self, recent: Recent<'_>, estimate: Impedance) -> Option<LineSearch> {
-        let mut local = DirectSums.centred_moments(recent, estimate);
-        let view = WindowView::of(&self.config, &DirectSums, recent, estimate, &mut local);
+        let mut local = DirectSums.centred_moments(&recent, estimate);
+        let view = WindowView::of(&self.config, &DirectSums, &recent, estimate, &mut local);
         search(self.criterion.direction, &view, &Powers::of(&view)?)
     }
 }

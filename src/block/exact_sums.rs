@@ -9,8 +9,6 @@
 //! - A sample that does not fit the scale begins another run at once, which holds the newest samples, while the first holds the others. At
 //!   each update one sample is transferred, until the first is empty.
 
-use core::mem::replace;
-
 use crate::block::config::BlockConfig;
 use crate::block::integer_sums::{ExactRun, Scale, bits_for};
 use crate::block::second_order::{Moments, SecondOrderSums};
@@ -74,7 +72,7 @@ pub struct ExactSums {
 
 impl ExactSums {
     /// A window that was not followed sample by sample: all of it, about `centre`.
-    fn rebuild(&mut self, config: &BlockConfig, recent: Recent<'_>, centre: Impedance) {
+    fn rebuild(&mut self, config: &BlockConfig, recent: &Recent<'_>, centre: Impedance) {
         let bits = bits_for(config.window);
         let centre = if is_moderate(centre) { centre } else { Impedance::ZERO };
         let mut scale = Scale::initial(bits);
@@ -89,7 +87,7 @@ impl ExactSums {
     }
 
     /// Sums all of `recent`; whether every sample fits the scale.
-    fn sum_anew(&mut self, recent: Recent<'_>, centre: Impedance, scale: &Scale) -> bool {
+    fn sum_anew(&mut self, recent: &Recent<'_>, centre: Impedance, scale: &Scale) -> bool {
         self.run.restart(centre, scale);
         let (mut fits, mut odd) = (true, None);
         recent.for_each(|o| match odd.take() {
@@ -103,10 +101,10 @@ impl ExactSums {
         self.limit.trailing_zeros()
     }
 
-    /// An update while the window fills, or samples are being transferred, or with a sample that does not fit the scale.
+    /// An update at the begin of a window, while samples are being transferred, or with a sample that does not fit the scale.
     #[cold]
     #[inline(never)]
-    fn push_unusual(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
+    fn push_unusual(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) {
         let fill = if self.fill == config.window { self.fill } else { self.fill + 1 };
         let newest = recent.newest().unwrap_or_default();
         if config.window < MIN_WINDOW {
@@ -129,7 +127,7 @@ impl ExactSums {
     }
 
     /// Takes in the newest sample, removes the oldest, and transfers the newest of the older run.
-    fn transfer(&mut self, config: &BlockConfig, recent: Recent<'_>, newest: &Observation) {
+    fn transfer(&mut self, config: &BlockConfig, recent: &Recent<'_>, newest: &Observation) {
         let mut older = match self.second_use {
             SecondUse::Older(count) => count,
             _ => {
@@ -166,7 +164,7 @@ impl ExactSums {
     /// Checks centre and scale, or prepares another run.
     #[cold]
     #[inline(never)]
-    fn maintain(&mut self, recent: Recent<'_>, estimate: Impedance) {
+    fn maintain(&mut self, recent: &Recent<'_>, estimate: Impedance) {
         let newest = recent.newest().unwrap_or_default();
         if let SecondUse::Prepared(count) = self.second_use {
             self.prepare(recent, &newest, count);
@@ -176,7 +174,7 @@ impl ExactSums {
     }
 
     /// Two more samples of the run that is being prepared: the newest, and the newest of those that it does not hold.
-    fn prepare(&mut self, recent: Recent<'_>, newest: &Observation, count: u16) {
+    fn prepare(&mut self, recent: &Recent<'_>, newest: &Observation, count: u16) {
         let is_last = count + 1 >= self.fill;
         let older = if is_last { None } else { recent.before_newest(usize::from(count) + 1) };
         let fits = self.second.add(newest, &older.unwrap_or_default(), self.limit);
@@ -209,7 +207,7 @@ impl ExactSums {
     /// The sums while samples are being transferred, and of a short window.
     #[cold]
     #[inline(never)]
-    fn unusual_moments(&self, recent: Recent<'_>) -> SecondOrderSums {
+    fn unusual_moments(&self, recent: &Recent<'_>) -> SecondOrderSums {
         if self.fill == 0 {
             return SecondOrderSums::over(recent, self.run.centre);
         }
@@ -242,26 +240,35 @@ impl WindowSums for ExactSums {
     type CentredMoments = SecondOrderSums;
 
     #[inline(always)]
-    fn push(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance) {
-        if self.fill == config.window && recent.len() == usize::from(config.window) && self.due > 0 {
-            let newest = recent.newest().unwrap_or_default();
-            let left = replace(&mut self.leaving, recent.oldest().unwrap_or_default());
-            if self.run.replace(&newest, &left, self.limit) {
-                self.due -= 1;
-                if self.due == 0 {
-                    self.maintain(recent, estimate);
-                }
-                return;
+    fn push(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) {
+        let fill = self.fill + u16::from(self.fill < config.window);
+        if self.due > 0
+            && recent.len() == usize::from(fill)
+            && let Some((newest, oldest)) = recent.ends()
+            && self.run.replace(newest, &self.leaving, self.limit)
+        {
+            self.fill = fill;
+            if fill == config.window {
+                self.leaving = *oldest;
             }
-            self.leaving = left;
+            self.due -= 1;
+            if self.due == 0 {
+                self.maintain(recent, estimate);
+            }
+            return;
         }
         self.push_unusual(config, recent, estimate);
     }
 
     #[inline(always)]
-    fn centred_moments(&self, recent: Recent<'_>, _: Impedance) -> CentredMoments<SecondOrderSums> {
+    fn centred_moments(&self, recent: &Recent<'_>, _: Impedance) -> CentredMoments<SecondOrderSums> {
         let moments = if self.due > 0 { self.run.moments() } else { self.unusual_moments(recent) };
         CentredMoments { centre: self.run.centre, moments }
+    }
+
+    #[inline(always)]
+    fn plain_least_squares(&self, config: &BlockConfig, samples: f32) -> Option<Impedance> {
+        if self.due == 0 || config.prior.is_some() { None } else { self.run.plain_least_squares(config, samples) }
     }
 }
 
@@ -318,13 +325,13 @@ mod tests {
             ring.push(next(k));
             let recent = ring.recent().last(window.into());
             let before = sums.second_use;
-            sums.push(&config, recent, estimate);
+            sums.push(&config, &recent, estimate);
             begun[0] += u64::from(sums.second_use == SecondUse::Prepared(0));
             begun[1] += u64::from(matches!(
                 (before, sums.second_use),
                 (SecondUse::Unused | SecondUse::Prepared(_), SecondUse::Older(_))
             ));
-            let CentredMoments { centre, moments } = sums.centred_moments(recent, estimate);
+            let CentredMoments { centre, moments } = sums.centred_moments(&recent, estimate);
             let solution = Solution::of(&moments, recent.len() as f32, &config, centre);
             estimate = centre.moved(1.0, solution.correction);
             if k % stride == 0 {

@@ -2,6 +2,7 @@
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
+use crate::block::config::BlockConfig;
 use crate::block::second_order::SecondOrderSums;
 use crate::contact::{Impedance, Observation};
 use crate::front_end::Units;
@@ -171,18 +172,17 @@ struct IntegerSums {
 impl IntegerSums {
     /// Adds `new` and removes `old`.
     ///
-    /// Squares by `a^2 - b^2 = (a - b) (a + b)`. Each sum is stored before the next is formed: eight sums of 64 bits are more than the
+    /// Squares by `a^2 - b^2 = (a - b) (a + b)`, products by `a c - b d = (a - b) c + b (c - d)`. Each sum is stored before the next is formed: eight sums of 64 bits are more than the
     /// registers of the core, and where the compiler kept them there it moved them to the stack and back.
     #[inline(always)]
     fn replace(&mut self, new: FixedPoint, old: FixedPoint) {
         let FixedPoint { penetration: x, rate: v, residual: e } = new;
         let FixedPoint { penetration: old_x, rate: old_v, residual: old_e } = old;
-        let (minus_x, minus_v) = (old_x.wrapping_neg(), old_v.wrapping_neg());
         let change = [x.wrapping_sub(old_x), v.wrapping_sub(old_v), e.wrapping_sub(old_e)];
         add_product(&mut self.xx, change[0], x.wrapping_add(old_x));
-        add_products(&mut self.xv, [x, v], [minus_x, old_v]);
-        add_products(&mut self.xe, [x, e], [minus_x, old_e]);
-        add_products(&mut self.ve, [v, e], [minus_v, old_e]);
+        add_in_turn(&mut self.xv, [change[0], v], [old_x, change[1]]);
+        add_in_turn(&mut self.xe, [change[0], e], [old_x, change[2]]);
+        add_in_turn(&mut self.ve, [change[1], e], [old_v, change[2]]);
         add_product(&mut self.x, change[0], 1);
         add_product(&mut self.vv, change[1], v.wrapping_add(old_v));
         add_product(&mut self.v, change[1], 1);
@@ -214,6 +214,13 @@ impl IntegerSums {
 fn add_product(sum: &mut i64, a: i32, b: i32) {
     *sum = sum.wrapping_add(i64::from(a) * i64::from(b));
     compiler_fence(Ordering::SeqCst);
+}
+
+/// Adds one product after the other, each by one multiplication with accumulation. Both at once are a multiplication more, and an addition.
+#[inline(always)]
+fn add_in_turn(sum: &mut i64, [a, b]: [i32; 2], [c, d]: [i32; 2]) {
+    add_product(sum, a, b);
+    add_product(sum, c, d);
 }
 
 #[inline(always)]
@@ -284,6 +291,27 @@ impl ExactRun {
             residual: Impedance { stiffness: single(s.xe) * x * e, damping: single(s.ve) * v * e },
             residual_energy: single(s.ee) * e * e,
         }
+    }
+
+    /// The least-squares solution, in internal units, without a prior; `None` where it cannot tell B, or is not finite.
+    ///
+    /// It is solved in whole numbers of the scale. Their units are powers of two, so each step rounds as that of [`Solution`] does, which
+    /// solves in internal units.
+    ///
+    /// [`Solution`]: crate::block::solution::Solution
+    #[inline(always)]
+    pub fn plain_least_squares(&self, config: &BlockConfig, samples: f32) -> Option<Impedance> {
+        let (s, scale) = (&self.sums, &self.scale);
+        let regressors = Sym2 { xx: single(s.xx), xv: single(s.xv), vv: single(s.vv) };
+        let rate_floor = config.rate_floor * scale.rate;
+        let moving = regressors.vv > samples * (rate_floor * rate_floor);
+        let inverse = regressors.invert(config.independence_floor).filter(|_| moving)?;
+        let correction = inverse.times(Impedance { stiffness: single(s.xe), damping: single(s.ve) });
+        let solution = Impedance {
+            stiffness: self.centre.stiffness + correction.stiffness * scale.penetration * scale.force_unit,
+            damping: self.centre.damping + correction.damping * scale.rate * scale.force_unit,
+        };
+        solution.is_finite().then_some(solution)
     }
 
     /// The mean squares over `samples` samples in whole numbers of the scale, the newest of which is `newest`: never less than half its

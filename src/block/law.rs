@@ -34,7 +34,7 @@ pub struct CriterionStep {
 #[derive(Debug, Clone, Copy)]
 pub struct WindowView<'a, M: WindowSums> {
     pub config: &'a BlockConfig,
-    pub recent: Recent<'a>,
+    pub recent: &'a Recent<'a>,
     pub memory: &'a M,
     pub estimate: Impedance,
     pub samples: f32,
@@ -48,7 +48,7 @@ impl<'a, M: WindowSums> WindowView<'a, M> {
     pub fn of(
         config: &'a BlockConfig,
         memory: &'a M,
-        recent: Recent<'a>,
+        recent: &'a Recent<'a>,
         estimate: Impedance,
         local: &'a mut CentredMoments<M::CentredMoments>,
     ) -> Self {
@@ -77,6 +77,20 @@ pub trait Criterion {
 
     /// The move from the estimate of `view`.
     fn advance(&self, view: &WindowView<'_, Self::WindowSums>) -> CriterionStep;
+
+    /// The estimate after `estimate`, without what tells of its quality; the same where the next is not finite.
+    #[inline(always)]
+    fn advance_estimate(
+        &self,
+        config: &BlockConfig,
+        memory: &Self::WindowSums,
+        recent: &Recent<'_>,
+        estimate: Impedance,
+    ) -> Impedance {
+        let mut local = memory.centred_moments(recent, estimate);
+        let to = self.advance(&WindowView::of(config, memory, recent, estimate, &mut local)).to;
+        if to.is_finite() { to } else { estimate }
+    }
 }
 
 /// A law on a sliding window, for a given criterion.
@@ -90,16 +104,11 @@ impl<C: Criterion> BlockLaw<C> {
     /// Updates the estimate with the newest of `recent`, without interval, fill or excitation. The state is that of
     /// [`UpdateLaw::update`], and both may be mixed. Returns the innovation, in internal units of force.
     pub fn update_estimate(&self, state: &mut BlockState<C::WindowSums>, recent: Recent<'_>) -> f32 {
-        let recent = recent.last(self.window());
+        let recent = &recent.last(self.window());
         let innovation = recent.newest().unwrap_or_default().residual(state.estimate);
         state.memory.push(&self.config, recent, state.estimate);
         if recent.len() >= usize::from(self.config.minimum_fill) {
-            let mut local = state.memory.centred_moments(recent, state.estimate);
-            let view = WindowView::of(&self.config, &state.memory, recent, state.estimate, &mut local);
-            let moved = self.criterion.advance(&view).to;
-            if moved.is_finite() {
-                state.estimate = moved;
-            }
+            state.estimate = self.criterion.advance_estimate(&self.config, &state.memory, recent, state.estimate);
         }
         innovation
     }
@@ -122,7 +131,7 @@ impl<C: Criterion> UpdateLaw for BlockLaw<C> {
     }
 
     fn update(&self, state: &mut Self::State, recent: Recent<'_>) -> Step {
-        let recent = recent.last(self.window());
+        let recent = &recent.last(self.window());
         let innovation = recent.newest().unwrap_or_default().residual(state.estimate);
         let fill = recent.len() as f32 / f32::from(self.config.window);
         state.memory.push(&self.config, recent, state.estimate);

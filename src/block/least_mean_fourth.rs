@@ -2,7 +2,7 @@
 
 use crate::block::compensated_sums::CompensatedSums;
 use crate::block::config::BlockConfig;
-use crate::block::fourth_order::FourthOrderSums;
+use crate::block::fourth_order::{FourthOrderSums, QuarticSums};
 use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
 use crate::block::second_order::SecondOrderSums;
@@ -14,6 +14,7 @@ use crate::math::cubic::depressed_root;
 use crate::math::larger;
 use crate::math::sym2::Sym2;
 use crate::quality::Flags;
+use crate::window::Recent;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -88,7 +89,11 @@ pub(crate) fn search_direction<M: WindowSums>(
         }
         Direction::Newton => hessian.solve(descent, view.config.independence_floor),
     };
-    let d = newton.filter(|d| d.is_finite()).unwrap_or(descent);
+    scaled_to_one(newton.filter(|d| d.is_finite()).unwrap_or(descent))
+}
+
+/// `d` scaled so that its larger entry has magnitude one; `None` where it is zero.
+fn scaled_to_one(d: Impedance) -> Option<Impedance> {
     let largest = larger(d.stiffness.abs(), d.damping.abs());
     if largest.is_nan() || largest <= 0.0 {
         return None;
@@ -101,8 +106,12 @@ pub(crate) fn search_direction<M: WindowSums>(
 const MAX_CENTRE_FRACTION: f32 = 0.5;
 
 /// How far to go along `u`, in its length; `None` where nothing is excited along it.
-fn length_along(u: Impedance, view: &WindowView<'_, CompensatedSums<FourthOrderSums>>) -> Option<f32> {
-    let here = &view.local.moments;
+fn length_along(
+    u: Impedance,
+    here: &QuarticSums,
+    memory: &CompensatedSums<FourthOrderSums>,
+    estimate: Impedance,
+) -> Option<f32> {
     let quartic = here.quartic(u);
     if quartic.is_nan() || quartic <= 0.0 {
         return None;
@@ -110,13 +119,41 @@ fn length_along(u: Impedance, view: &WindowView<'_, CompensatedSums<FourthOrderS
     let (cubic, square, slope) = (here.cubic(u), here.square(u), here.slope(u));
     let centre = cubic / quartic;
     let (spread, skew) = if centre * cubic > MAX_CENTRE_FRACTION * square {
-        let there = view.memory.moments_about(view.estimate.moved(centre, u));
+        let there = memory.quartic_about(estimate.moved(centre, u));
         (larger(there.square(u), 0.0), there.slope(u))
     } else {
         (square - centre * cubic, slope - centre * (3.0 * square - 2.0 * (centre * cubic)))
     };
     let length = centre + depressed_root(spread / quartic, -skew / quartic)?;
     length.is_finite().then_some(length)
+}
+
+/// Where the line search along `u` leads from `estimate`; `estimate` itself where there is no step.
+fn line_search(
+    u: Option<Impedance>,
+    here: &QuarticSums,
+    memory: &CompensatedSums<FourthOrderSums>,
+    estimate: Impedance,
+) -> Impedance {
+    let step = u
+        .and_then(|u| Some((length_along(u, here, memory, estimate)?, u)))
+        .map_or(Impedance::ZERO, |(length, u)| Impedance::ZERO.moved(length, u));
+    estimate.moved(1.0, step)
+}
+
+impl LeastMeanFourth {
+    /// The step along Newton's direction, which the solution of second order may restrict.
+    #[inline(never)]
+    fn newton_step(
+        &self,
+        config: &BlockConfig,
+        memory: &CompensatedSums<FourthOrderSums>,
+        recent: &Recent<'_>,
+        estimate: Impedance,
+    ) -> Impedance {
+        let mut local = memory.centred_moments(recent, estimate);
+        self.advance(&WindowView::of(config, memory, recent, estimate, &mut local)).to
+    }
 }
 
 /// Variance per sample at the minimum of the fourth power, `E e^6 / (9 (E e^2)^2)`, with the sixth moment of a Gaussian of
@@ -133,14 +170,31 @@ impl Criterion for LeastMeanFourth {
     type WindowSums = CompensatedSums<FourthOrderSums>;
 
     fn advance(&self, view: &WindowView<'_, CompensatedSums<FourthOrderSums>>) -> CriterionStep {
-        let here = &view.local.moments;
-        let step = search_direction(self.direction, view, here.descent(), here.hessian())
-            .and_then(|u| Some((length_along(u, view)?, u)))
-            .map_or(Impedance::ZERO, |(length, u)| Impedance::ZERO.moved(length, u));
+        let here = view.local.moments.quartic();
+        let u = search_direction(self.direction, view, here.descent(), here.hessian());
         CriterionStep {
-            to: view.estimate.moved(1.0, step),
-            noise_variance: noise_variance(here.second(), view.samples, here.cost()),
+            to: line_search(u, here, view.memory, view.estimate),
+            noise_variance: noise_variance(view.local.moments.second(), view.samples, here.cost()),
             flags: self.direction.flags(&view.solution),
         }
+    }
+
+    /// A steepest descent needs neither the sums of second order nor their solution.
+    #[inline(always)]
+    fn advance_estimate(
+        &self,
+        config: &BlockConfig,
+        memory: &CompensatedSums<FourthOrderSums>,
+        recent: &Recent<'_>,
+        estimate: Impedance,
+    ) -> Impedance {
+        let to = match self.direction {
+            Direction::SteepestDescent => {
+                let here = memory.quartic_about(estimate);
+                line_search(scaled_to_one(here.descent()), &here, memory, estimate)
+            }
+            Direction::Newton => self.newton_step(config, memory, recent, estimate),
+        };
+        if to.is_finite() { to } else { estimate }
     }
 }

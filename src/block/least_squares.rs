@@ -7,7 +7,9 @@ use crate::block::exact_sums::ExactSums;
 use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
 use crate::block::window_sums::WindowSums;
+use crate::contact::Impedance;
 use crate::error::ConfigError;
+use crate::window::Recent;
 
 /// `theta = (sum phi phi')^-1 sum phi F` over the window (eq. 5-6), by the closed 2x2 inverse.
 ///
@@ -41,5 +43,30 @@ impl<M: WindowSums> Criterion for LeastSquares<M> {
             noise_variance: solution.residual_variance(sums, view.samples),
             flags: solution.flags,
         }
+    }
+
+    #[inline(always)]
+    fn advance_estimate(
+        &self,
+        config: &BlockConfig,
+        memory: &M,
+        recent: &Recent<'_>,
+        estimate: Impedance,
+    ) -> Impedance {
+        match memory.plain_least_squares(config, recent.len() as f32) {
+            Some(solution) => solution,
+            None => self.advance_unusual(config, memory, recent, estimate),
+        }
+    }
+}
+
+impl<M: WindowSums> LeastSquares<M> {
+    /// [`Criterion::advance_estimate`] by the sums in internal units: with a prior, where B is held, and where a run is being replaced.
+    #[cold]
+    #[inline(never)]
+    fn advance_unusual(&self, config: &BlockConfig, memory: &M, recent: &Recent<'_>, estimate: Impedance) -> Impedance {
+        let mut local = memory.centred_moments(recent, estimate);
+        let to = self.advance(&WindowView::of(config, memory, recent, estimate, &mut local)).to;
+        if to.is_finite() { to } else { estimate }
     }
 }

@@ -20,7 +20,7 @@ pub struct SecondOrderSums {
 
 impl SecondOrderSums {
     /// Over all of `recent`, about `centre`.
-    pub fn over(recent: Recent<'_>, centre: Impedance) -> Self {
+    pub fn over(recent: &Recent<'_>, centre: Impedance) -> Self {
         let mut s = Self::default();
         recent.for_each(|o| s = s.with(&Self::of(o, o.residual(centre))));
         s

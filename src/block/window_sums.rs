@@ -18,10 +18,17 @@ pub trait WindowSums: Copy + Default + core::fmt::Debug {
     type CentredMoments: Moments;
 
     /// Takes in the newest of `recent`, which is the law's own window; `estimate` is the estimate before it.
-    fn push(&mut self, config: &BlockConfig, recent: Recent<'_>, estimate: Impedance);
+    fn push(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance);
 
     /// The window's sums, about `estimate` or a nearby estimate that is cheaper.
-    fn centred_moments(&self, recent: Recent<'_>, estimate: Impedance) -> CentredMoments<Self::CentredMoments>;
+    fn centred_moments(&self, recent: &Recent<'_>, estimate: Impedance) -> CentredMoments<Self::CentredMoments>;
+
+    /// The least-squares solution where nothing is out of the ordinary, the same to the bit as that of the sums, for the estimate alone;
+    /// `None` where they have to be asked.
+    #[inline(always)]
+    fn plain_least_squares(&self, _config: &BlockConfig, _samples: f32) -> Option<Impedance> {
+        None
+    }
 }
 
 /// Keeps nothing: the window is summed at every update.
@@ -31,9 +38,9 @@ pub struct DirectSums;
 impl WindowSums for DirectSums {
     type CentredMoments = SecondOrderSums;
 
-    fn push(&mut self, _: &BlockConfig, _: Recent<'_>, _: Impedance) {}
+    fn push(&mut self, _: &BlockConfig, _: &Recent<'_>, _: Impedance) {}
 
-    fn centred_moments(&self, recent: Recent<'_>, estimate: Impedance) -> CentredMoments<SecondOrderSums> {
+    fn centred_moments(&self, recent: &Recent<'_>, estimate: Impedance) -> CentredMoments<SecondOrderSums> {
         CentredMoments { centre: estimate, moments: SecondOrderSums::over(recent, estimate) }
     }
 }

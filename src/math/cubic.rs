@@ -1,6 +1,6 @@
 //! The cubic of the least-mean-fourth line search, in a form that keeps single precision.
 
-use crate::math::{cbrt, sqrt};
+use crate::math::{cbrt, near_sqrt};
 
 /// The one real root of `t^3 + 3 p t + q = 0` for `p >= 0` (Cardano's formula with a discriminant above zero).
 ///
@@ -18,7 +18,7 @@ pub fn depressed_root(p: f32, q: f32) -> Option<f32> {
         return Some(0.0);
     }
     let half = 0.5 * q.abs();
-    let s = cbrt(half + sqrt(half * half + p * p * p));
+    let s = cbrt(half + near_sqrt(half * half + p * p * p));
     let t = p / s;
     let root = -q / (s * s + p + t * t);
     (p >= 0.0 && s > 0.0 && root.is_finite()).then_some(root)

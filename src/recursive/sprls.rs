@@ -77,19 +77,35 @@ impl Sprls {
 
     /// `beta * NINT(gamma e^2)`, bounded by the limit of the covariance.
     pub fn perturbation(&self, innovation: f32) -> f32 {
-        let level = self.config.perturbation_sensitivity * innovation * innovation;
-        // From 2^23 on a single-precision number is whole already.
-        let steps = if level < 8_388_608.0 { (level + 0.5) as u32 as f32 } else { level };
+        let level = self.level(innovation);
+        let steps = if level < Self::HALF_STEP {
+            0.0
+        } else if level < Self::WHOLE_FROM {
+            nearest(level)
+        } else {
+            level
+        };
         smaller(self.config.perturbation_gain * steps, self.config.covariance_limit)
     }
 }
 
+/// The nearest whole number, halves upward, for 0.5 to 2^23.
+#[inline(always)]
+fn nearest(level: f32) -> f32 {
+    (level + 0.5) as u32 as f32
+}
+
 impl Sprls {
-    /// Whether `innovation` perturbs: less than half a step does not; a NaN does.
+    /// Steps of the perturbation below which there is none.
+    const HALF_STEP: f32 = 0.5;
+
+    /// A single-precision number is whole from here on: 2^23.
+    const WHOLE_FROM: f32 = 8_388_608.0;
+
+    /// Steps of the perturbation, not rounded yet.
     #[inline(always)]
-    fn perturbs(&self, innovation: f32) -> bool {
-        let level = self.config.perturbation_sensitivity * innovation * innovation;
-        level.partial_cmp(&0.499_999) != Some(Ordering::Less)
+    fn level(&self, innovation: f32) -> f32 {
+        self.config.perturbation_sensitivity * innovation * innovation
     }
 
     /// Adds the perturbation of the previous innovation, if any.
@@ -111,21 +127,41 @@ impl Sprls {
         let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe_with(o, 1.0, 1.0);
-        if self.perturbs(state.innovation_before) {
-            self.perturb(&mut covariance, state.innovation_before);
+        let level = self.level(state.innovation_before);
+        // What is no number is no less than half a step, and not below the whole numbers.
+        if level.partial_cmp(&Self::HALF_STEP) != Some(Ordering::Less) {
+            if level.partial_cmp(&Self::WHOLE_FROM) != Some(Ordering::Less) {
+                return self.update_estimate_limited(state, o);
+            }
+            // A perturbation beyond the limit takes the covariance there as well, which is then not plain.
+            covariance.inflate(self.config.perturbation_gain * nearest(level));
         }
-        state.innovation_before = innovation;
-        if !state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
-            self.commit_limited(state, gain, covariance);
+        if state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
+            state.innovation_before = innovation;
+            innovation
+        } else {
+            self.update_estimate_limited(state, o)
         }
-        innovation
     }
 
-    /// The end of an update whose covariance has to be limited, or is reset.
+    /// The same where the perturbation or the covariance has to be limited, or the covariance begins anew.
     #[cold]
-    fn commit_limited(&self, state: &mut SprlsState, gain: Impedance, mut covariance: Covariance) {
-        covariance.limit(self.config.covariance_limit);
-        state.recursion.commit(gain, state.innovation_before, covariance, self.config.initial_covariance);
+    fn update_estimate_limited(&self, state: &mut SprlsState, o: &Observation) -> f32 {
+        self.advance(state, o).0
+    }
+
+    /// One update of estimate and covariance.
+    #[inline(always)]
+    fn advance(&self, state: &mut SprlsState, o: &Observation) -> (f32, Impedance, Flags) {
+        let innovation = o.residual(state.recursion.estimate);
+        let mut covariance = state.recursion.covariance;
+        let gain = covariance.observe_with(o, 1.0, 1.0);
+        self.perturb(&mut covariance, state.innovation_before);
+        let limited = covariance.limit(self.config.covariance_limit);
+        let mut flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
+        flags.set(Flags::LIMITED, limited);
+        state.innovation_before = innovation;
+        (innovation, gain, flags)
     }
 }
 
@@ -146,14 +182,7 @@ impl UpdateLaw for Sprls {
 
     fn update(&self, state: &mut SprlsState, recent: Recent<'_>) -> Step {
         let o = recent.newest().unwrap_or_default();
-        let innovation = o.residual(state.recursion.estimate);
-        let mut covariance = state.recursion.covariance;
-        let gain = covariance.observe_with(&o, 1.0, 1.0);
-        self.perturb(&mut covariance, state.innovation_before);
-        let limited = covariance.limit(self.config.covariance_limit);
-        let mut flags = state.recursion.commit(gain, innovation, covariance, self.config.initial_covariance);
-        flags.set(Flags::LIMITED, limited);
-        state.innovation_before = innovation;
+        let (innovation, gain, flags) = self.advance(state, &o);
         state.recursion.step(&o, gain, innovation, DEFAULT_FORGETTING, flags)
     }
 }

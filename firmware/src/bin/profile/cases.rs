@@ -35,14 +35,17 @@ impl<L: UpdateLaw> Work for Update<'_, L> {
     }
 }
 
-/// One update without what tells of its quality.
-struct Learn<F> {
+/// One update without what tells of its quality, called plainly: law, state and what it is given are at hand as a caller has them.
+struct UpdateEstimate<'a, L, S, I, F> {
+    law: &'a L,
+    state: &'a mut S,
+    given: I,
     update_estimate: F,
 }
 
-impl<F: FnMut()> Work for Learn<F> {
+impl<L, S, I: Copy, F: Fn(&L, &mut S, I) -> f32> Work for UpdateEstimate<'_, L, S, I, F> {
     fn work(&mut self) {
-        (self.update_estimate)();
+        (self.update_estimate)(self.law, self.state, self.given);
     }
 }
 
@@ -136,26 +139,16 @@ impl Laws<'_> {
     fn estimate_alone(&mut self) -> Result<(), Fault> {
         let config = &self.recording.config;
         let ewrls = Ewrls::new(config.ewrls).map_err(unsound)?;
-        self.observe("ewrls_alone", &ewrls, |state, o| {
-            ewrls.update_estimate(state, o);
-        })?;
+        self.observe("ewrls_alone", &ewrls, Ewrls::update_estimate)?;
         let sprls = Sprls::new(config.sprls).map_err(unsound)?;
-        self.observe("sprls_alone", &sprls, |state, o| {
-            sprls.update_estimate(state, o);
-        })?;
+        self.observe("sprls_alone", &sprls, Sprls::update_estimate)?;
         let cusum = CusumRls::new(CusumRlsConfig::default()).map_err(unsound)?;
-        self.observe("cusum_rls_alone", &cusum, |state, o| {
-            cusum.update_estimate(state, o);
-        })?;
+        self.observe("cusum_rls_alone", &cusum, CusumRls::update_estimate)?;
         let block = BlockConfig::of(300);
         let bls = BlockLeastSquares::new(block).map_err(unsound)?;
-        self.update_estimate("bls_alone", 300, &bls, |state, recent| {
-            bls.update_estimate(state, recent);
-        })?;
+        self.update_estimate("bls_alone", 300, &bls, |law, state, recent| law.update_estimate(state, recent))?;
         let blmf = BlockLeastMeanFourth::new(block, Direction::SteepestDescent).map_err(unsound)?;
-        self.update_estimate("blmf_alone", 300, &blmf, |state, recent| {
-            blmf.update_estimate(state, recent);
-        })
+        self.update_estimate("blmf_alone", 300, &blmf, |law, state, recent| law.update_estimate(state, recent))
     }
 
     /// A recursive law, with the newest observation at hand.
@@ -163,11 +156,12 @@ impl Laws<'_> {
         &mut self,
         name: &str,
         law: &L,
-        mut observe: impl FnMut(&mut L::State, &Observation),
+        observe: impl Fn(&L, &mut L::State, &Observation) -> f32,
     ) -> Result<(), Fault> {
         self.walk(name, 0, law, |gauge, state, recent| {
-            let o = recent.newest().ok_or("a ring without an observation")?;
-            gauge.pass(&mut Learn { update_estimate: || observe(black_box(state), &o) })
+            let o = &recent.newest().ok_or("a ring without an observation")?;
+            let update_estimate = |law: &L, state: &mut L::State, o: &Observation| observe(law, state, o);
+            gauge.pass(&mut UpdateEstimate { law, state, given: o, update_estimate })
         })
     }
 
@@ -176,10 +170,12 @@ impl Laws<'_> {
         name: &str,
         window: u16,
         law: &L,
-        mut update_estimate: impl FnMut(&mut L::State, Recent<'_>),
+        update_estimate: impl Fn(&L, &mut L::State, Recent<'_>) -> f32,
     ) -> Result<(), Fault> {
         self.walk(name, window, law, |gauge, state, recent| {
-            gauge.pass(&mut Learn { update_estimate: || update_estimate(black_box(state), recent) })
+            let update_estimate =
+                |law: &L, state: &mut L::State, recent: Recent<'_>| update_estimate(law, state, recent);
+            gauge.pass(&mut UpdateEstimate { law, state, given: recent, update_estimate })
         })
     }
 }
