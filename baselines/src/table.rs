@@ -48,10 +48,12 @@ struct Measured {
 
 impl Measured {
     fn take() -> Result<Self> {
-        let ours = Profile::take(Leave::Install)?;
+        let ours = Profile::take(Leave::Install, &|step| eprintln!("ours: {step}"))?;
         Ok(Self {
             ours,
-            baselines: Profile::of(Leave::Install, "palpate-baselines", "--example", "baselines")?,
+            baselines: Profile::of(Leave::Install, "palpate-baselines", "--example", "baselines", &|step| {
+                eprintln!("baselines: {step}")
+            })?,
             rows: observations()?,
         })
     }
@@ -149,7 +151,7 @@ mod tests {
         let budget = kept_costs().expect("the budget");
         let baselines = match tools::for_profiling(Leave::Look) {
             Ok(_) => Some(
-                Profile::of(Leave::Look, "palpate-baselines", "--example", "baselines")
+                Profile::of(Leave::Look, "palpate-baselines", "--example", "baselines", &|_| ())
                     .unwrap_or_else(|error| panic!("{error:#}")),
             ),
             Err(MissingTools(missing)) => {

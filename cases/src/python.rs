@@ -19,6 +19,8 @@ pub struct Packages {
     pub name: &'static str,
     /// What they are for, for messages.
     pub purpose: &'static str,
+    /// What the environment takes on the disk once it is set up, MB: measured on 64-bit Linux with Python 3.11.
+    pub size_mb: u32,
     /// The pinned versions, as pip reads them.
     pub requirements: &'static str,
     /// File names and texts.
@@ -29,6 +31,7 @@ pub struct Packages {
 pub const SIMULATORS: Packages = Packages {
     name: "simulators",
     purpose: "to simulate cases with software of other authors",
+    size_mb: 560,
     requirements: include_str!("../simulators/requirements.txt"),
     scripts: &[
         ("protocol.py", include_str!("../simulators/protocol.py")),
@@ -42,6 +45,7 @@ pub const SIMULATORS: Packages = Packages {
 pub const BASELINES: Packages = Packages {
     name: "baselines",
     purpose: "to run published identification packages on the same recordings",
+    size_mb: 410,
     requirements: include_str!("../baselines/requirements.txt"),
     scripts: &[
         ("signals.py", include_str!("../baselines/signals.py")),
@@ -128,6 +132,21 @@ pub fn set_up(home: &Path, packages: &Packages) -> Result<Python, Missing> {
     place.install(&system).map_err(|error| place.missing(&format!("{error:#}")))
 }
 
+/// What [`set_up`] would install under `home`, in words: the packages, their size, what they are for, and how; `None` where it would
+/// install nothing.
+#[must_use]
+pub fn to_install(home: &Path, packages: &Packages) -> Option<String> {
+    let place = EnvironmentFolder::new(home, packages);
+    let may = std::env::var_os(NO_INSTALL).is_none() && place.ready().is_none();
+    may.then(|| place.in_words())
+}
+
+/// The environment of `packages` under `home` as what is missing, because whoever was asked said no.
+#[must_use]
+pub fn declined(home: &Path, packages: &Packages) -> Missing {
+    EnvironmentFolder::new(home, packages).missing("you said no")
+}
+
 /// Where the environment of some packages is.
 struct EnvironmentFolder<'a> {
     packages: &'a Packages,
@@ -185,7 +204,7 @@ impl<'a> EnvironmentFolder<'a> {
         }
         let python = self.python();
         let environment = self.folder.join("environment");
-        eprintln!("installing {}, {}: {}", self.pinned(), self.packages.purpose, self.advice());
+        eprintln!("installing {}", self.in_words());
         run(Command::new(system).args(["-m", "venv", "--clear"]).arg(&environment))?;
         let list = self.folder.join("requirements.txt");
         fs::write(&list, self.packages.requirements).with_context(|| format!("cannot write {}", list.display()))?;
@@ -194,6 +213,12 @@ impl<'a> EnvironmentFolder<'a> {
         self.write_scripts()?;
         fs::write(self.marker(), self.packages.requirements).context("cannot mark the set-up as done")?;
         Ok(python)
+    }
+
+    /// What would be installed, how large it is, what for, and how.
+    fn in_words(&self) -> String {
+        let Packages { size_mb, purpose, .. } = self.packages;
+        format!("{} with what they need, {size_mb} MB, {purpose}: {}", self.pinned(), self.advice())
     }
 
     /// The packages with their versions.
@@ -246,6 +271,19 @@ mod tests {
             assert!(text.contains(part), "{text}");
         }
         assert!(!home.exists());
+    }
+
+    #[test]
+    fn what_would_be_installed_is_told_with_its_size_unless_nothing_may_be() {
+        let home = std::env::temp_dir().join(format!("palpate-size-{}", std::process::id()));
+        let told = to_install(&home, &SIMULATORS);
+        if std::env::var_os(NO_INSTALL).is_some() {
+            assert_eq!(told, None);
+        } else {
+            let told = told.unwrap();
+            assert!(told.contains("drake==") && told.contains("560 MB") && told.contains("pip install into"), "{told}");
+        }
+        assert!(declined(&home, &SIMULATORS).to_string().contains("you said no"));
     }
 
     #[test]

@@ -26,6 +26,7 @@ pub use interrupt::{InterruptCost, interrupt_costs};
 
 use crate::outfile::OutFile;
 use crate::output_paths;
+use crate::progress::Steps;
 use crate::qemu_bench;
 use crate::tools::{self, Leave, TARGET};
 use calls::Calls;
@@ -71,22 +72,30 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// Builds the image and its counter, and runs it twice.
+    /// Builds the image and its counter, and runs it twice; `say` is told which step begins.
     ///
     /// # Errors
     /// A tool is missing, the image fails, or the two counts disagree.
-    pub fn take(leave: Leave) -> Result<Self> {
-        Self::of(leave, "palpate-firmware", "--bin", "profile")
+    pub fn take(leave: Leave, say: &dyn Fn(&str)) -> Result<Self> {
+        Self::of(leave, "palpate-firmware", "--bin", "profile", say)
     }
 
     /// The same of another image that measures by the same gauge: the one `name` of `package`, `kind` being `--bin` or `--example`.
     ///
     /// # Errors
     /// As [`Self::take`].
-    pub fn of(leave: Leave, package: &str, kind: &str, name: &str) -> Result<Self> {
-        let emulator = emulator::Emulator::prepare(tools::for_profiling(leave)?)?;
+    pub fn of(leave: Leave, package: &str, kind: &str, name: &str, say: &dyn Fn(&str)) -> Result<Self> {
+        say("looking for the cross target, QEMU and the disassembler");
+        let qemu = tools::for_profiling(leave)?;
+        say("building the plugin that counts");
+        let emulator = emulator::Emulator::prepare(qemu)?;
+        say("building and reading the image");
         let image = Image::read(&qemu_bench::build(package, kind, name)?)?;
-        let cases = counts::combine(&emulator.with_plugin(&image)?, &emulator.with_clock(&image)?)?;
+        say("first count, by the plugin");
+        let by_plugin = emulator.with_plugin(&image)?;
+        say("second count, by the emulator's clock");
+        let cases = counts::combine(&by_plugin, &emulator.with_clock(&image)?)?;
+        say("following calls and stack");
         let figures = figures::of(&image, &cases, &trial::updates(&trial::samples()?)?)?;
         Ok(Self { image, cases, figures })
     }
@@ -174,7 +183,9 @@ pub fn run(args: &ProfileArgs) -> Result<()> {
     output_paths::check(&[], &outputs)?;
     let listing = args.listing.as_deref().map(OutFile::create).transpose()?;
     let json = args.json.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()?;
-    let profile = Profile::take(Leave::Install)?;
+    let steps = Steps::new("profile");
+    let profile = Profile::take(Leave::Install, &|step| steps.say(step))?;
+    drop(steps);
     let text = table::text(&profile.figures, profile.passes());
     let document = Document {
         schema: "palpate.profile/1",

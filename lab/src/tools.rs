@@ -30,6 +30,7 @@ pub enum Leave {
 pub const PYTHON_TESTS: Packages = Packages {
     name: "package",
     purpose: "to test the Python package and to run its notebook",
+    size_mb: 410,
     requirements: include_str!("../proofs/requirements.txt"),
     scripts: &[],
 };

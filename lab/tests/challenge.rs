@@ -260,6 +260,9 @@ fn a_score_is_redrawn_without_a_run_and_a_broken_one_is_refused() {
     };
     let again = redraw("score.json");
     assert!(again.status.success());
+    // Where it is no terminal, a line a step.
+    let said = String::from_utf8_lossy(&again.stderr);
+    assert!(said.contains("challenge: reading the score") && said.contains("challenge: the page"), "{said}");
     assert_eq!(serde_json::from_slice::<Value>(&again.stdout).unwrap(), score);
     let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
     assert!(page.contains(score["sealed_sha256"].as_str().unwrap()) && page.ends_with("</html>\n"));

@@ -23,7 +23,11 @@ fn every_update_is_counted_twice_alike_and_costs_what_its_budget_says() {
     if !ready() {
         return;
     }
-    let profile = Profile::take(Leave::Look).unwrap_or_else(|error| panic!("{error:#}"));
+    let steps = std::cell::RefCell::new(Vec::new());
+    let profile = Profile::take(Leave::Look, &|step| steps.borrow_mut().push(step.to_owned()))
+        .unwrap_or_else(|error| panic!("{error:#}"));
+    let steps = steps.into_inner();
+    assert!(steps.len() >= 5 && steps.iter().any(|step| step.contains("second count")), "{steps:?}");
     assert!(profile.passes() > 50_000, "{} passes", profile.passes());
     let beyond = profile.beyond_budget().unwrap_or_else(|error| panic!("{error:#}"));
     assert!(

@@ -299,6 +299,10 @@ fn what_cannot_be_simulated_is_refused_by_name() {
     says(rotary, &["[reference]", "nothing", "do not fit this rig"]);
     says("[rig]\nname = \"r\"\ncoordinate = \"linear\"\n", &["[drive]", "[contact]"]);
     says(&format!("{EXAMPLE}[simulation]\nduration_s = 1e9\n"), &["[simulation]", "rows"]);
+    let pulses = format!(
+        "{EXAMPLE}[reference]\nfree_depth_m = -0.01\ncontact_depth_m = 0.01\nperiod_s = 1e-6\ncontact_s = 5e-7\nsmoothing_s = 0.1\n"
+    );
+    says(&pulses, &["[reference] period_s", "smoothing_s"]);
     let clock = format!("{EXAMPLE}[control]\nproportional_n_m = 1\nderivative_n_s_m = 1\nrate_hz = 1e12\n");
     says(&clock, &["integration steps in all", "rate_hz"]);
 }

@@ -13,6 +13,7 @@ use super::{page, protocol, summary};
 use crate::error::{InputError, UsageError};
 use crate::outfile::OutFile;
 use crate::output_paths;
+use crate::progress::Steps;
 use crate::qemu_bench::project;
 
 /// Put the diagnosis to recordings whose missing effect is concealed from it
@@ -30,7 +31,8 @@ pub struct ChallengeArgs {
     /// Write the page
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    /// Where cases come from: simulators (own, mujoco, drake, exudyn; all where left out), and folders of another author
+    /// Where cases come from: simulators (own, mujoco, drake, exudyn; all where left out; all but own take 560 MB of Python packages, which are
+    /// installed into a folder of their own: asked for on a terminal, told of elsewhere, not with PALPATE_NO_INSTALL=1), and folders of another author
     /// (NNN/rig.toml, NNN/trial-*.csv, truth.json with `truth` and `also` of each case)
     #[arg(long, value_name = "NAME|DIR", value_delimiter = ',')]
     pub source: Vec<CaseSource>,
@@ -55,6 +57,9 @@ pub struct ChallengeArgs {
     pub publish: bool,
 }
 
+/// What takes the time of a page: a case is drawn and diagnosed for a picture.
+const DRAWING: &str = "the page, for which one case is drawn and diagnosed anew";
+
 /// Runs `palpate challenge`.
 ///
 /// # Errors
@@ -73,7 +78,11 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
     };
     let (json, report) = (open(&args.json)?, open(&args.report)?);
     let challenge = match &args.from {
-        Some(path) => read(path)?,
+        Some(path) => {
+            let steps = Steps::new("challenge");
+            steps.say("reading the score, and holding its counts against its rows");
+            read(path)?
+        }
         None => protocol::run(args)?,
     };
     let summary = summary::table(&challenge);
@@ -88,10 +97,14 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
     }
     let text = serde_json::to_string_pretty(&challenge).context("the score cannot be written as JSON")? + "\n";
     if let Some(mut file) = report {
+        let steps = Steps::new("challenge");
+        steps.say(DRAWING);
         page::write(&challenge, &mut file).map_err(|error| file.fault(&error))?;
         file.commit()?;
     }
     if args.publish {
+        let steps = Steps::new("challenge");
+        steps.say(DRAWING);
         publish(&challenge, &text, &summary)?;
     }
     match json {

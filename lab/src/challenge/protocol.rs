@@ -18,6 +18,7 @@ use super::recordings::specimen::{self, Specimen};
 use super::run_diagnosis::run_diagnosis;
 use super::work_folder::{Settings, WorkFolder};
 use super::{baselines, case_list, external_cases, generate, score_run};
+use crate::consent::{self, Answer};
 use crate::error::UsageError;
 use crate::qemu_bench::project;
 use crate::recordings_folder::{ADVICE, folder};
@@ -201,7 +202,12 @@ fn scripts(packages: &Packages, what: &str, left_out: &mut Vec<String>) -> Optio
         Ok(folder) => folder.join("target").join("python"),
         Err(_) => std::env::temp_dir().join("palpate-python"),
     };
-    match python::set_up(&home, packages) {
+    let question = python::to_install(&home, packages);
+    let found = match question.as_deref().map_or(Answer::Yes, consent::ask) {
+        Answer::Yes => python::set_up(&home, packages),
+        Answer::No => Err(python::declined(&home, packages)),
+    };
+    match found {
         Ok(python) => Some(python),
         Err(missing) => {
             eprintln!("note: {what} are left out: {missing}");

@@ -22,6 +22,9 @@ const POSITION_RESOLUTION: f64 = 1e-4;
 const FORCE_RESOLUTION: f64 = 0.05;
 const FORCE_NOISE: f64 = 0.09;
 
+/// Shortest period of the pulses, over the time that smooths them: as many of them are under way at any moment as it is short.
+const MIN_PERIOD_FRACTION: f64 = 0.01;
+
 /// A rig with nothing left open.
 pub struct CompletedRig {
     pub rig: Rig,
@@ -67,6 +70,16 @@ pub fn complete(rig: &Rig, origin: &str) -> Result<CompletedRig, InputError> {
         None if !fits => return Err(demand("reference", "the depths and times of the commanded trajectory")),
         None => reference::BENCH,
     };
+    if reference.period_s < MIN_PERIOD_FRACTION * reference.smoothing_s {
+        return Err(InputError::new(
+            format!("{origin}: [reference] period_s"),
+            reference.period_s,
+            format!(
+                "at least {} s, a hundredth of smoothing_s: shorter pulses are smoothed away",
+                MIN_PERIOD_FRACTION * reference.smoothing_s
+            ),
+        ));
+    }
     let sensors = rig.sensors;
     let open =
         sensors.position_resolution.is_none() || sensors.force_resolution.is_none() || sensors.force_noise.is_none();
