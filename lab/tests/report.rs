@@ -12,7 +12,7 @@ mod safe;
 mod signal;
 
 use answers::{explained, nano, no_mismatch, parameters, unknown, value};
-use palpate_lab::diagnose::report::diagnosis::{Diagnosis, Phase, PlotData, Verdict};
+use palpate_lab::diagnose::report::diagnosis::{Correlations, Diagnosis, Phase, PlotData, Verdict};
 use palpate_lab::diagnose::report::html;
 use reading::{bytes, doubles, floats, prose};
 use signal::{Size, trace};
@@ -69,6 +69,29 @@ fn two_effects_and_a_rival_are_told_with_figures() {
             "0.8110 ± 0.0040 kg",
         ],
     );
+}
+
+#[test]
+fn values_that_are_told_only_together_are_told_in_words() {
+    let (mut answer, pictures) = explained();
+    let names = ["stiffness_n_m", "damping_n_s_m", "hunt_crossley_damping.alpha"].map(str::to_owned);
+    let matrix = |rho: f64| vec![vec![1.0, 0.3, -0.1], vec![0.3, 1.0, rho], vec![-0.1, rho, 1.0]];
+    let of = |rho: f64| Correlations { channel: "force", parameters: names.to_vec(), matrix: matrix(rho) };
+    answer.correlations = vec![of(-0.973)];
+    let report = (answer.clone(), pictures.clone());
+    says(
+        &report,
+        &[
+            "damping_n_s_m and hunt_crossley_damping.alpha are told only together: their errors have a correlation of −0.97.",
+            "If one is larger than estimated, the other is smaller,",
+        ],
+    );
+    let page = written(&report);
+    for mark in ["<details open>", "<td class=\"below strong\">−0.97</td>", "<td class=\"above weak\">0.30</td>"] {
+        assert!(page.contains(mark), "{mark}");
+    }
+    answer.correlations = vec![of(0.85)];
+    says(&(answer, pictures), &["No two errors have a correlation beyond ±0.9"]);
 }
 
 #[test]

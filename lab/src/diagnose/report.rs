@@ -4,6 +4,7 @@ mod channel;
 mod contact_plot;
 pub mod contact_report;
 mod contact_residual;
+mod correlation;
 pub mod diagnosis;
 mod drive_plot;
 pub mod drive_report;

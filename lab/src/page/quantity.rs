@@ -85,6 +85,15 @@ fn prefixed(value: f64, unit: &str) -> String {
     format!("{}{}", trim(&fixed(scaled, 3 - magnitude(scaled))), scale.words)
 }
 
+/// A coefficient of correlation; no rounding makes it one.
+pub(crate) fn coefficient(value: f64) -> String {
+    match value.abs() {
+        size if size < 0.005 => "0".into(),
+        size if size < 0.995 || size == 1.0 => fixed(value, 2),
+        _ => fixed(value.clamp(-0.9999, 0.9999), 4),
+    }
+}
+
 /// A share, to two or three significant digits.
 pub(crate) fn percent(value: f64) -> String {
     if !value.is_finite() {

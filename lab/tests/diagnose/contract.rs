@@ -67,6 +67,19 @@ fn the_json_is_the_contracts() {
     numbers(fit, &["noise_floor", "as_given", "refitted", "improved", "explained_share"]);
     let checked = list(answer, "checked");
     assert!(checked.iter().all(Value::is_string) && checked.contains(&"force_bias".into()));
+    assert!(!list(answer, "correlations").is_empty());
+    for one in list(answer, "correlations") {
+        one_of(&one["channel"], &["force", "effort"]);
+        let (names, rows) = (list(one, "parameters"), list(one, "matrix"));
+        assert!(names.len() >= 2 && names.iter().all(Value::is_string) && rows.len() == names.len(), "{one}");
+        for (at, row) in rows.iter().enumerate() {
+            let row: Vec<f64> = row.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect();
+            assert!(row.len() == names.len() && row[at] == 1.0, "{one}");
+            assert!(row.iter().all(|number| (-1.0..=1.0).contains(number)), "{one}");
+            let column = rows.iter().map(|row| row[at].as_f64().unwrap());
+            assert!(row.iter().zip(column).all(|(a, b)| (a - b).abs() < 1e-9), "{one}");
+        }
+    }
     for nominal in list(answer, "nominal") {
         texts(nominal, &["name", "unit"]);
         interval(nominal, "fitted");

@@ -188,6 +188,7 @@ fn bare(verdict: Verdict) -> Diagnosis {
         fit: goodness("force", [1.0; 4], 0.0),
         channels: Vec::new(),
         nominal: Vec::new(),
+        correlations: Vec::new(),
         checked: CHECKED.to_vec(),
         findings: Vec::new(),
     }

@@ -48,6 +48,8 @@ pub struct Outcome {
     pub chosen: Fit,
     /// 95 % interval of each of its values.
     pub intervals: Vec<[f64; 2]>,
+    /// Covariance of the values by the curvature of the fit; zero for those that were not fitted, empty where it is not known.
+    pub covariance: Vec<Vec<f64>>,
     /// The effects that are named.
     pub named: Vec<NamedTerm>,
     /// What else would do.
@@ -133,6 +135,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let verdict = verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
     let is_left = matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained);
     let learned = if is_left { learned(data, &fit) } else { None };
+    let spread = intervals(data, &fit, &rest, &improved.values);
     Outcome {
         trials: Vec::new(),
         noise: Vec::new(),
@@ -141,7 +144,8 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         learned,
         nominal: search.nominal.clone(),
         known_terms: search.nominal.model.terms.len(),
-        intervals: intervals(data, &fit, &rest, &improved.values),
+        intervals: spread.ends,
+        covariance: spread.covariance,
         alternatives: alternatives(search, &folds, &fit, &chosen, &refitted),
         named,
         residuals: [given_residual, refitted.residual, improved.residual],

@@ -3,18 +3,18 @@
 use super::criteria::{BLOCK_ROWS, BLOCK_S};
 use super::fit::{Data, Fit};
 use super::term::Step;
-use crate::diagnose::interval::{NORMAL_97_5, deviations};
+use crate::diagnose::interval::{Intervals, NORMAL_97_5, spread};
 
 /// The interval of each value of `fit`; `halves` are the values that two halves of the recordings gave.
 #[must_use]
-pub fn intervals(data: &Data<'_>, fit: &Fit, halves: &[Vec<f64>; 2]) -> Vec<[f64; 2]> {
+pub fn intervals(data: &Data<'_>, fit: &Fit, halves: &[Vec<f64>; 2]) -> Intervals {
     let (innovations, columns) = data.linearised(fit);
     let ranges = fit.model.ranges();
     let block = ((BLOCK_S / fit.model.scales.period_s) as usize).max(BLOCK_ROWS);
     // Standardised innovations have a power of one, and nothing is known of a value beforehand.
-    let deviations = deviations(&innovations, &columns, &vec![0.0; columns.len()], 1.0, block);
+    let found = spread(&innovations, &columns, &vec![0.0; columns.len()], 1.0, block);
     let each = fit.values.iter().enumerate().map(|(at, value)| {
-        let steps = NORMAL_97_5 * deviations[at];
+        let steps = NORMAL_97_5 * found.deviations[at];
         // Two halves that differ by more than noise say how far the law can be trusted.
         let apart = 0.5 * NORMAL_97_5 * (halves[0][at] - halves[1][at]).abs();
         let range = &ranges[at];
@@ -28,5 +28,7 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, halves: &[Vec<f64>; 2]) -> Vec<[f64
         };
         [low.max(range.low), high.min(range.high)]
     });
-    each.collect()
+    let all: Vec<usize> = (0..fit.values.len()).collect();
+    let slopes: Vec<f64> = ranges.iter().zip(&fit.values).map(|(range, value)| range.slope(*value)).collect();
+    Intervals { ends: each.collect(), covariance: found.covariance_of(all.len(), &all, &slopes) }
 }

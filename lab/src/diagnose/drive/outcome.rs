@@ -46,6 +46,8 @@ pub struct Outcome {
     pub chosen: Fit,
     /// 95 % interval of each of its values.
     pub intervals: Vec<[f64; 2]>,
+    /// Covariance of the values by the curvature of the fit; zero for those that were not fitted, empty where it is not known.
+    pub covariance: Vec<Vec<f64>>,
     /// The terms that are named.
     pub named: Vec<NamedTerm>,
     /// What else would do.
@@ -130,13 +132,14 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     let refitted = folds.held_out(data, &search.nominal, &common);
     let (fit, improved, named) = believed(search, &folds, &common, chosen.fit.clone());
     let expected_noise = expected_noise(search, &fit, &common, seed);
-    let intervals = intervals(data, &fit, &improved.values);
+    let spread = intervals(data, &fit, &improved.values);
     let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], expected_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
         trials: Vec::new(),
         verdict,
-        intervals,
+        intervals: spread.ends,
+        covariance: spread.covariance,
         named,
         alternatives,
         missing: [given, refitted.missing, improved.missing],

@@ -3,7 +3,8 @@
 use super::channel::{self, Residuals};
 use super::contact_plot;
 use super::contact_residual::contact_residual;
-use super::diagnosis::{Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
+use super::correlation;
+use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
 use super::summary;
 use crate::diagnose::contact::fit::Data;
 use crate::diagnose::contact::held_out::rms;
@@ -53,6 +54,7 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         channels: vec![fit.clone()],
         fit,
         nominal: nominal(outcome, rig),
+        correlations: correlations(outcome, rig).into_iter().collect(),
         checked: effects::ALL
             .iter()
             .map(|effect| effect.spec())
@@ -232,6 +234,25 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         row("damping", c.damping_unit(), contact.damping, index::DAMPING),
         row("surface", c.position_unit(), contact.surface, index::SURFACE),
     ]
+}
+
+/// Of the values that the report shows.
+fn correlations(outcome: &Outcome, rig: &Rig) -> Option<Correlations> {
+    let c = rig.coordinate;
+    let model = &outcome.chosen.model;
+    let nominal = [
+        ("stiffness", c.stiffness_unit(), index::STIFFNESS),
+        ("damping", c.damping_unit(), index::DAMPING),
+        ("surface", c.position_unit(), index::SURFACE),
+    ];
+    let mut shown: Vec<(String, usize)> = nominal.map(|(name, unit, at)| (format!("{name}_{}", slug(unit)), at)).into();
+    for (at, term) in model.terms.iter().enumerate() {
+        let first = model.first_value_of(at);
+        let names = term.parameters().iter().enumerate();
+        shown.extend(names.map(|(offset, parameter)| (format!("{}.{}", term.name(), parameter.name), first + offset)));
+    }
+    let values = |values: &[f64]| shown.iter().map(|(name, at)| (name.clone(), values[*at])).collect();
+    correlation::correlations(CHANNEL, &outcome.chosen.values, &outcome.covariance, &values)
 }
 
 /// What limits the answer.

@@ -30,6 +30,8 @@ pub struct Diagnosis {
     pub channels: Vec<FitQuality>,
     /// The nominal values, given and refitted.
     pub nominal: Vec<Nominal>,
+    /// How the fitted values of each channel hang together.
+    pub correlations: Vec<Correlations>,
     /// Every effect that was tried.
     pub checked: Vec<&'static str>,
     /// What the recordings themselves showed before anything was fitted, and what limits the answer.
@@ -152,6 +154,17 @@ pub struct Nominal {
     /// 95 % interval; `null` in the JSON where the recordings set no end.
     #[schemars(with = "[Option<f64>; 2]")]
     pub ci95: [f64; 2],
+}
+
+/// Correlations of the errors of fitted values: where two are nearly one, the recordings tell them only together.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Correlations {
+    /// "force" or "effort".
+    pub channel: &'static str,
+    /// Keys of the rig file, and `effect.parameter`.
+    pub parameters: Vec<String>,
+    /// From -1 to 1, a row for each of `parameters`, by the curvature of the fit.
+    pub matrix: Vec<Vec<f64>>,
 }
 
 /// What the page draws beside the answer.

@@ -1,11 +1,13 @@
 //! The diagnosis of the drive's channel, from what was identified of it.
 
 use super::channel::{self, Residuals};
-use super::diagnosis::{Diagnosis, Evidence, Finding, Location, Nominal, Phase, Physics, PlotData};
+use super::correlation;
+use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, Location, Nominal, Phase, Physics, PlotData};
 use super::drive_plot;
 use super::drive_residual::drive_residual;
 use super::summary;
 use crate::diagnose::contact;
+use crate::diagnose::drive::fit::Fit;
 use crate::diagnose::drive::held_out::rms;
 use crate::diagnose::drive::model::index;
 use crate::diagnose::drive::named::{NamedEffect, named};
@@ -75,6 +77,7 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig, touched: Option<&Touched>) -> 
         channels: vec![fit.clone()],
         fit,
         nominal: nominal(outcome, rig),
+        correlations: correlations(outcome, rig).into_iter().collect(),
         checked: effects::ALL
             .iter()
             .map(|effect| effect.spec())
@@ -224,4 +227,23 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         row("viscous", c.damping_unit(), drive.viscous, index::VISCOUS),
         row("effort_delay", "s", 0.0, index::DELAY),
     ]
+}
+
+/// Of the values that the report shows, of which some are not those of the fit: a pitch is one over a frequency.
+fn correlations(outcome: &Outcome, rig: &Rig) -> Option<Correlations> {
+    let names: Vec<String> = nominal(outcome, rig).into_iter().map(|row| row.name).collect();
+    let fit = &outcome.chosen;
+    let shown = |values: &[f64]| {
+        let moved = Fit { values: values.to_vec(), ..fit.clone() };
+        let ends = vec![[0.0; 2]; values.len()];
+        let at = [index::INERTIA, index::VISCOUS, index::DELAY];
+        let mut shown: Vec<(String, f64)> = names.iter().cloned().zip(at.map(|at| values[at])).collect();
+        for effect in (0..fit.model.terms.len()).filter_map(|at| named(&moved, &ends, at)) {
+            let parameters = effect.effect.spec().forms[effect.form].parameters.iter().zip(&effect.values);
+            shown
+                .extend(parameters.map(|(parameter, value)| (format!("{}.{}", effect.name(), parameter.name), *value)));
+        }
+        shown
+    };
+    correlation::correlations(CHANNEL, &fit.values, &outcome.covariance, &shown)
 }

@@ -2,6 +2,7 @@
 
 mod axis;
 mod binned_residual;
+mod correlations;
 mod data;
 mod effect;
 mod evidence;
@@ -41,6 +42,7 @@ pub fn write(answer: &Diagnosis, pictures: &PlotData, out: &mut impl Write) -> i
         (trial::section(&trials, answer))
         (locations::section(answer, pictures))
         (nominal::section(answer, pictures))
+        (correlations::section(answer))
         (finding::section(answer, pictures))
         (run::section(pictures.run.as_ref()))
     };

@@ -25,6 +25,7 @@ pub fn merged(contact: Report, drive: Report, coordinate: Coordinate) -> Report 
     diagnosis.locations.extend(other.locations);
     diagnosis.channels.extend(other.channels);
     diagnosis.nominal.extend(other.nominal);
+    diagnosis.correlations.extend(other.correlations);
     for name in other.checked {
         if !diagnosis.checked.contains(&name) {
             diagnosis.checked.push(name);
