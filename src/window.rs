@@ -110,11 +110,16 @@ impl<'a> Recent<'a> {
         self.older.first().or(self.newer.first()).copied()
     }
 
-    /// The newest and the oldest one, where they stand.
+    /// The older and the newer run of samples.
     #[inline(always)]
-    pub(crate) fn ends(&self) -> Option<(&'a Observation, &'a Observation)> {
-        let (newest, oldest) = (self.newer.last()?, self.newer.first()?);
-        Some((newest, self.older.first().unwrap_or(oldest)))
+    pub(crate) fn runs(&self) -> (&'a [Observation], &'a [Observation]) {
+        (self.older, self.newer)
+    }
+
+    /// A view of two runs of samples, of which the older is empty where the newer is.
+    #[inline(always)]
+    pub(crate) fn of_runs(older: &'a [Observation], newer: &'a [Observation]) -> Self {
+        Self { older, newer }
     }
 
     /// The one `count` before the newest; the newest itself where that is zero.

@@ -49,6 +49,10 @@ impl Input {
     /// The faults that the status reports.
     pub fn faults(&self) -> Faults {
         let mut faults = Faults::empty();
+        // The usual tick.
+        if self.status.is_empty() && self.elapsed <= 1 {
+            return faults;
+        }
         for (note, fault) in [
             (InputStatus::NO_POSITION, Faults::POSITION_TIMEOUT),
             (InputStatus::NO_FORCE, Faults::FORCE_TIMEOUT),

@@ -213,11 +213,10 @@ impl<M: Moments> WindowSums for CompensatedSums<M> {
             self.swap(config);
         }
         if self.fill == config.window {
-            let oldest = self.oldest;
-            self.older.remove(&oldest);
+            self.older.remove(&self.oldest);
         }
         self.age = self.age.saturating_add(1);
-        if self.age < config.window.saturating_mul(2) {
+        if u32::from(self.age) < 2 * u32::from(config.window) {
             self.split_at_outlier(&newest);
         }
         self.fill = expected;

@@ -68,6 +68,10 @@ pub struct ExactSums {
     scale_is_next: bool,
     /// Updates until the next check or the next sample of a prepared run; zero while samples are being transferred.
     due: u16,
+    /// Length of the window that the usual update goes on with: one more than `fill`, or all. Zero, which none is, where `due` is.
+    expected: u16,
+    /// Length of the window from which on it is solved without a prior; beyond all where there is one.
+    solved_from: u16,
 }
 
 impl ExactSums {
@@ -83,6 +87,7 @@ impl ExactSums {
         }
         self.fill = u16::try_from(recent.len()).unwrap_or(u16::MAX);
         self.check_interval = CHECK_INTERVAL.min(config.window / 2);
+        self.solved_from = if config.prior.is_some() { u16::MAX } else { config.minimum_fill };
         (self.second_use, self.due, self.scale_is_next) = (SecondUse::Unused, FIRST_CHECK, false);
     }
 
@@ -104,7 +109,13 @@ impl ExactSums {
     /// An update at the begin of a window, while samples are being transferred, or with a sample that does not fit the scale.
     #[cold]
     #[inline(never)]
-    fn push_unusual(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) {
+    fn push_unusual(
+        &mut self,
+        config: &BlockConfig,
+        (older, newer): (&[Observation], &[Observation]),
+        estimate: Impedance,
+    ) {
+        let recent = &Recent::of_runs(older, newer);
         let fill = if self.fill == config.window { self.fill } else { self.fill + 1 };
         let newest = recent.newest().unwrap_or_default();
         if config.window < MIN_WINDOW {
@@ -119,11 +130,40 @@ impl ExactSums {
             self.fill = fill;
             self.due -= 1;
             if self.due == 0 {
-                self.maintain(recent, estimate);
+                self.maintain((older, newer), estimate);
             }
         }
         let full = self.fill == config.window;
         self.leaving = recent.oldest().filter(|_| full).unwrap_or_default();
+        self.expected = match self.due {
+            0 => 0,
+            _ if full => self.fill,
+            _ => self.fill + 1,
+        };
+    }
+
+    /// The usual update: one run, a window as long as it was expected, and a sample that fits the scale. Else nothing is done.
+    ///
+    /// What is rare is handed over in registers: a `Recent` would be stored for it at each update.
+    #[inline(always)]
+    fn push_usual(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) -> bool {
+        let (older, newer) = recent.runs();
+        let length = older.len() + newer.len();
+        let (true, [.., newest]) = (length == usize::from(self.expected), newer) else { return false };
+        if !self.run.replace(newest, &self.leaving, self.limit) {
+            return false;
+        }
+        self.fill = length as u16;
+        if length < usize::from(config.window) {
+            self.expected = length as u16 + 1;
+        } else if let [oldest, ..] = if older.is_empty() { newer } else { older } {
+            self.leaving = *oldest;
+        }
+        self.due -= 1;
+        if self.due == 0 {
+            self.maintain((older, newer), estimate);
+        }
+        true
     }
 
     /// Takes in the newest sample, removes the oldest, and transfers the newest of the older run.
@@ -164,7 +204,8 @@ impl ExactSums {
     /// Checks centre and scale, or prepares another run.
     #[cold]
     #[inline(never)]
-    fn maintain(&mut self, recent: &Recent<'_>, estimate: Impedance) {
+    fn maintain(&mut self, (older, newer): (&[Observation], &[Observation]), estimate: Impedance) {
+        let recent = &Recent::of_runs(older, newer);
         let newest = recent.newest().unwrap_or_default();
         if let SecondUse::Prepared(count) = self.second_use {
             self.prepare(recent, &newest, count);
@@ -241,23 +282,9 @@ impl WindowSums for ExactSums {
 
     #[inline(always)]
     fn push(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) {
-        let fill = self.fill + u16::from(self.fill < config.window);
-        if self.due > 0
-            && recent.len() == usize::from(fill)
-            && let Some((newest, oldest)) = recent.ends()
-            && self.run.replace(newest, &self.leaving, self.limit)
-        {
-            self.fill = fill;
-            if fill == config.window {
-                self.leaving = *oldest;
-            }
-            self.due -= 1;
-            if self.due == 0 {
-                self.maintain(recent, estimate);
-            }
-            return;
+        if !self.push_usual(config, recent, estimate) {
+            self.push_unusual(config, recent.runs(), estimate);
         }
-        self.push_unusual(config, recent, estimate);
     }
 
     #[inline(always)]
@@ -267,8 +294,15 @@ impl WindowSums for ExactSums {
     }
 
     #[inline(always)]
-    fn plain_least_squares(&self, config: &BlockConfig, samples: f32) -> Option<Impedance> {
-        if self.due == 0 || config.prior.is_some() { None } else { self.run.plain_least_squares(config, samples) }
+    fn push_and_solve(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) -> Option<Impedance> {
+        if !self.push_usual(config, recent, estimate) {
+            self.push_unusual(config, recent.runs(), estimate);
+            return None;
+        }
+        if recent.len() < usize::from(self.solved_from) {
+            return None;
+        }
+        self.run.plain_least_squares(config, recent.len() as f32)
     }
 }
 

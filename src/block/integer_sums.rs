@@ -295,17 +295,24 @@ impl ExactRun {
 
     /// The least-squares solution, in internal units, without a prior; `None` where it cannot tell B, or is not finite.
     ///
-    /// It is solved in whole numbers of the scale. Their units are powers of two, so each step rounds as that of [`Solution`] does, which
+    /// It is solved in whole numbers of the scale, with the inverse as [`Sym2::invert`] has it. Their units are powers of two, so each step rounds as that of [`Solution`] does, which
     /// solves in internal units.
     ///
     /// [`Solution`]: crate::block::solution::Solution
     #[inline(always)]
     pub fn plain_least_squares(&self, config: &BlockConfig, samples: f32) -> Option<Impedance> {
         let (s, scale) = (&self.sums, &self.scale);
-        let regressors = Sym2 { xx: single(s.xx), xv: single(s.xv), vv: single(s.vv) };
+        let [xx, xv, vv] = [s.xx, s.xv, s.vv].map(single);
+        let ratio = xv / xx;
+        let left = vv - ratio * xv;
         let rate_floor = config.rate_floor * scale.rate;
-        let moving = regressors.vv > samples * (rate_floor * rate_floor);
-        let inverse = regressors.invert(config.independence_floor).filter(|_| moving)?;
+        // Sums of squares are not negative; where that of x is zero, what is left is no number.
+        if !(left > config.independence_floor * vv && vv > samples * (rate_floor * rate_floor)) {
+            return None;
+        }
+        let of_rate = 1.0 / left;
+        let of_both = -ratio * of_rate;
+        let inverse = Sym2 { xx: 1.0 / xx - ratio * of_both, xv: of_both, vv: of_rate };
         let correction = inverse.times(Impedance { stiffness: single(s.xe), damping: single(s.ve) });
         let solution = Impedance {
             stiffness: self.centre.stiffness + correction.stiffness * scale.penetration * scale.force_unit,

@@ -78,6 +78,22 @@ pub trait Criterion {
     /// The move from the estimate of `view`.
     fn advance(&self, view: &WindowView<'_, Self::WindowSums>) -> CriterionStep;
 
+    /// Takes in the newest of `recent`; the estimate after `estimate`, without what tells of its quality.
+    #[inline(always)]
+    fn update_estimate(
+        &self,
+        config: &BlockConfig,
+        memory: &mut Self::WindowSums,
+        recent: &Recent<'_>,
+        estimate: Impedance,
+    ) -> Impedance {
+        memory.push(config, recent, estimate);
+        if recent.len() < usize::from(config.minimum_fill) {
+            return estimate;
+        }
+        self.advance_estimate(config, memory, recent, estimate)
+    }
+
     /// The estimate after `estimate`, without what tells of its quality; the same where the next is not finite.
     #[inline(always)]
     fn advance_estimate(
@@ -106,10 +122,7 @@ impl<C: Criterion> BlockLaw<C> {
     pub fn update_estimate(&self, state: &mut BlockState<C::WindowSums>, recent: Recent<'_>) -> f32 {
         let recent = &recent.last(self.window());
         let innovation = recent.newest().unwrap_or_default().residual(state.estimate);
-        state.memory.push(&self.config, recent, state.estimate);
-        if recent.len() >= usize::from(self.config.minimum_fill) {
-            state.estimate = self.criterion.advance_estimate(&self.config, &state.memory, recent, state.estimate);
-        }
+        state.estimate = self.criterion.update_estimate(&self.config, &mut state.memory, recent, state.estimate);
         innovation
     }
 }

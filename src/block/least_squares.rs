@@ -7,7 +7,7 @@ use crate::block::exact_sums::ExactSums;
 use crate::block::law::{BlockLaw, Criterion, CriterionStep, WindowView};
 use crate::block::second_order::Moments;
 use crate::block::window_sums::WindowSums;
-use crate::contact::Impedance;
+use crate::contact::{Impedance, Observation};
 use crate::error::ConfigError;
 use crate::window::Recent;
 
@@ -46,27 +46,36 @@ impl<M: WindowSums> Criterion for LeastSquares<M> {
     }
 
     #[inline(always)]
-    fn advance_estimate(
+    fn update_estimate(
         &self,
         config: &BlockConfig,
-        memory: &M,
+        memory: &mut M,
         recent: &Recent<'_>,
         estimate: Impedance,
     ) -> Impedance {
-        match memory.plain_least_squares(config, recent.len() as f32) {
+        match memory.push_and_solve(config, recent, estimate) {
             Some(solution) => solution,
-            None => self.advance_unusual(config, memory, recent, estimate),
+            None => self.advance_unusual(config, memory, recent.runs(), estimate),
         }
     }
 }
 
 impl<M: WindowSums> LeastSquares<M> {
-    /// [`Criterion::advance_estimate`] by the sums in internal units: with a prior, where B is held, and where a run is being replaced.
+    /// [`Criterion::advance_estimate`] by the sums in internal units, where the window is young, with a prior, where B is held, and where
+    /// one run is transferred to another.
     #[cold]
     #[inline(never)]
-    fn advance_unusual(&self, config: &BlockConfig, memory: &M, recent: &Recent<'_>, estimate: Impedance) -> Impedance {
-        let mut local = memory.centred_moments(recent, estimate);
-        let to = self.advance(&WindowView::of(config, memory, recent, estimate, &mut local)).to;
-        if to.is_finite() { to } else { estimate }
+    fn advance_unusual(
+        &self,
+        config: &BlockConfig,
+        memory: &M,
+        (older, newer): (&[Observation], &[Observation]),
+        estimate: Impedance,
+    ) -> Impedance {
+        let recent = &Recent::of_runs(older, newer);
+        if recent.len() < usize::from(config.minimum_fill) {
+            return estimate;
+        }
+        self.advance_estimate(config, memory, recent, estimate)
     }
 }

@@ -23,10 +23,11 @@ pub trait WindowSums: Copy + Default + core::fmt::Debug {
     /// The window's sums, about `estimate` or a nearby estimate that is cheaper.
     fn centred_moments(&self, recent: &Recent<'_>, estimate: Impedance) -> CentredMoments<Self::CentredMoments>;
 
-    /// The least-squares solution where nothing is out of the ordinary, the same to the bit as that of the sums, for the estimate alone;
-    /// `None` where they have to be asked.
+    /// As [`Self::push`]. The least-squares solution where nothing is out of the ordinary, the same to the bit as that of the sums; `None`
+    /// where they have to be asked.
     #[inline(always)]
-    fn plain_least_squares(&self, _config: &BlockConfig, _samples: f32) -> Option<Impedance> {
+    fn push_and_solve(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) -> Option<Impedance> {
+        self.push(config, recent, estimate);
         None
     }
 }

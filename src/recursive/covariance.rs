@@ -84,12 +84,19 @@ impl Covariance {
 
     /// A number that is finite only where all are.
     #[inline(always)]
-    pub(crate) fn total(&self) -> f32 {
+    fn total(&self) -> f32 {
         self.d1 + self.d2 + self.u
     }
 
-    /// A sufficient test, cheaper than [`Self::is_sound`] and [`Self::limit`], that a finite covariance is positive definite and within
-    /// `limit`: the sum of the factors is at most `limit` and their product is positive.
+    /// The factor above the diagonal.
+    #[inline(always)]
+    pub(crate) fn off_diagonal(&self) -> f32 {
+        self.u
+    }
+
+    /// A sufficient test, cheaper than [`Self::is_sound`] and [`Self::limit`], that a covariance whose off-diagonal factor is finite is
+    /// positive definite and within `limit`: the sum of the other factors, of which an update makes none negative, is at most `limit`,
+    /// and their product is positive.
     #[inline(always)]
     pub(crate) fn is_plain(&self, limit: f32) -> bool {
         self.d1 + self.d2 <= limit && self.d1 * self.d2 > 0.0
@@ -171,6 +178,10 @@ mod tests {
         }
         assert!(!Covariance { d1: 0.0, d2: 5.0, u: 0.0 }.is_plain(8.0));
         assert!(!Covariance { d1: 5.0, d2: 0.0, u: 0.0 }.is_plain(8.0));
-        assert_eq!(Covariance { d1: 3.0, d2: 5.0, u: 0.5 }.total(), 8.5);
+        for wrong in [f32::NAN, f32::INFINITY] {
+            assert!(!Covariance::diagonal(wrong, 5.0).is_plain(8.0) && !Covariance::diagonal(5.0, wrong).is_plain(8.0));
+        }
+        let covariance = Covariance { d1: 3.0, d2: 5.0, u: 0.5 };
+        assert_eq!((covariance.total(), covariance.off_diagonal()), (8.5, 0.5));
     }
 }

@@ -1,7 +1,5 @@
 //! Self-perturbing recursive least squares (SPRLS).
 
-use core::cmp::Ordering;
-
 use crate::contact::{Impedance, Observation};
 use crate::error::{ConfigError, require_not_negative};
 use crate::math::smaller;
@@ -75,21 +73,14 @@ impl Sprls {
         Ok(Self { config })
     }
 
-    /// `beta * NINT(gamma e^2)`, bounded by the limit of the covariance.
+    /// `beta * NINT(gamma e^2)` of at most 2^32 steps, bounded by the limit of the covariance; zero where the innovation is no number.
     pub fn perturbation(&self, innovation: f32) -> f32 {
         let level = self.level(innovation);
-        let steps = if level < Self::HALF_STEP {
-            0.0
-        } else if level < Self::WHOLE_FROM {
-            nearest(level)
-        } else {
-            level
-        };
-        smaller(self.config.perturbation_gain * steps, self.config.covariance_limit)
+        if level >= Self::HALF_STEP { self.limited(nearest(level)) } else { 0.0 }
     }
 }
 
-/// The nearest whole number, halves upward, for 0.5 to 2^23.
+/// The nearest whole number, halves upward, from 0.5 to 2^32, which nothing exceeds; zero where `level` is no number.
 #[inline(always)]
 fn nearest(level: f32) -> f32 {
     (level + 0.5) as u32 as f32
@@ -99,9 +90,6 @@ impl Sprls {
     /// Steps of the perturbation below which there is none.
     const HALF_STEP: f32 = 0.5;
 
-    /// A single-precision number is whole from here on: 2^23.
-    const WHOLE_FROM: f32 = 8_388_608.0;
-
     /// Steps of the perturbation, not rounded yet.
     #[inline(always)]
     fn level(&self, innovation: f32) -> f32 {
@@ -110,10 +98,15 @@ impl Sprls {
 
     /// Adds the perturbation of the previous innovation, if any.
     fn perturb(&self, covariance: &mut Covariance, innovation: f32) {
-        let perturbation = self.perturbation(innovation);
-        if perturbation > 0.0 {
-            covariance.inflate(perturbation);
+        let level = self.level(innovation);
+        if level >= Self::HALF_STEP {
+            covariance.inflate(self.limited(nearest(level)));
         }
+    }
+
+    /// So many steps of the perturbation, bounded by the limit of the covariance.
+    fn limited(&self, steps: f32) -> f32 {
+        smaller(self.config.perturbation_gain * steps, self.config.covariance_limit)
     }
 
     fn from(&self, estimate: Impedance) -> SprlsState {
@@ -124,18 +117,14 @@ impl Sprls {
 impl Sprls {
     /// Updates the estimate and its covariance by one observation without its uncertainty: as [`crate::Ewrls::update_estimate`].
     pub fn update_estimate(&self, state: &mut SprlsState, o: &Observation) -> f32 {
-        let innovation = o.residual(state.recursion.estimate);
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe_with(o, 1.0, 1.0);
         let level = self.level(state.innovation_before);
-        // What is no number is no less than half a step, and not below the whole numbers.
-        if level.partial_cmp(&Self::HALF_STEP) != Some(Ordering::Less) {
-            if level.partial_cmp(&Self::WHOLE_FROM) != Some(Ordering::Less) {
-                return self.update_estimate_limited(state, o);
-            }
-            // A perturbation beyond the limit takes the covariance there as well, which is then not plain.
+        if level >= Self::HALF_STEP {
+            // Not limited: a perturbation beyond the limit takes the covariance beyond it as well, which is then not plain.
             covariance.inflate(self.config.perturbation_gain * nearest(level));
         }
+        let innovation = o.residual(state.recursion.estimate);
         if state.recursion.commit_plain(gain, innovation, covariance, self.config.covariance_limit) {
             state.innovation_before = innovation;
             innovation

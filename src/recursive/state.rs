@@ -85,8 +85,8 @@ impl RecursiveState {
         limit: f32,
     ) -> bool {
         let estimate = self.estimate.moved(innovation, gain);
-        // A sum that is finite has no part that is not.
-        let total = estimate.stiffness + estimate.damping + covariance.total();
+        // A sum that is finite has no part that is not. The other two factors of a plain covariance are finite.
+        let total = estimate.stiffness + estimate.damping + covariance.off_diagonal();
         let plain = covariance.is_plain(limit) && total.is_finite();
         if plain {
             (self.estimate, self.covariance) = (estimate, covariance);
