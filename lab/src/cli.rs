@@ -12,6 +12,7 @@ use crate::completions::{self, CompletionsArgs};
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::error::UsageError;
 use crate::export::{self, ExportArgs};
+use crate::fleet::{self, DiagnoseAllArgs};
 use crate::interrupt;
 use crate::investigate::trial_of_method::{self, InvestigateChallengeArgs};
 use crate::investigate::{self, InvestigateArgs};
@@ -36,6 +37,8 @@ struct Cli {
 enum Command {
     /// Find where simulation and recordings differ, and which physics is missing
     Diagnose(DiagnoseArgs),
+    /// Diagnose many rigs into one table, and show which stand out and what changed
+    DiagnoseAll(DiagnoseAllArgs),
     /// List what a recording holds: columns or topics, rates, ranges and gaps
     Look(LookArgs),
     /// Diagnose, design the next trial, run it, and diagnose again
@@ -89,6 +92,7 @@ pub fn run_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>
     };
     let done = match parsed.command {
         Command::Diagnose(args) => diagnose::run(&args),
+        Command::DiagnoseAll(args) => fleet::run(&args),
         Command::Look(args) => look::run(&args),
         Command::Investigate(args) => investigate::run(&args),
         Command::InvestigateChallenge(args) => trial_of_method::run(&args),

@@ -23,7 +23,23 @@ import numpy as np
 from . import _palpate
 
 __version__ = _palpate.__version__
-__all__ = ["Diagnosis", "InputError", "Parameter", "Physics", "diagnose", "export", "main", "read"]
+__all__ = [
+    "Diagnosis",
+    "FleetRig",
+    "InputError",
+    "Parameter",
+    "Physics",
+    "RigResult",
+    "diagnose",
+    "diagnose_rig",
+    "export",
+    "fleet",
+    "main",
+    "read",
+]
+
+# Work that gets a process of its own is started as this package, not as the interpreter alone.
+_palpate.declare_program([_sys.executable, "-P", "-m", "palpate"], _palpate.__file__)
 
 
 class InputError(ValueError):
@@ -160,6 +176,45 @@ def export(improved, into, joint: str, *, to: str = "mjcf", actuator=None, senso
     for warning in [*notes, *(f"left out: {effect}" for effect in left_out)]:
         _warnings.warn(warning, stacklevel=2)
     return text
+
+
+@dataclass(frozen=True)
+class FleetRig:
+    """A rig of a fleet: its `name`, its `rig` file and its `recordings`, absolute paths."""
+
+    name: str
+    rig: str
+    recordings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class RigResult:
+    """What came of a rig of a fleet: the `json` of its diagnosis, or the `error` why there is none."""
+
+    name: str
+    json: str | None
+    error: str | None
+
+
+def fleet(source, out) -> list[FleetRig]:
+    """The rigs that `palpate diagnose-all SOURCE --out OUT` diagnoses: a folder with a subfolder for each, or a manifest.
+
+    Raises InputError where there is none.
+    """
+    with _as_input_error():
+        listed = _palpate.fleet(os.path.abspath(source), os.path.abspath(out))
+    return [FleetRig(name, str(rig), tuple(map(str, recordings))) for name, rig, recordings in listed]
+
+
+def diagnose_rig(rig: FleetRig, out, *, seed: int = 1, threads: int = 1) -> RigResult:
+    """Diagnoses one rig of a fleet, in a process of its own, into its folder below `out`: the worker of `palpate diagnose-all`, for
+    engines that run functions on many machines (examples/fleet_dask.py). What is there of the same inputs is not done again. `threads`
+    are those of the diagnosis; its answer does not depend on them.
+
+    Whatever is wrong with the rig is the `error` of its result.
+    """
+    listed = rig.name, rig.rig, list(rig.recordings)
+    return RigResult(rig.name, *_palpate.diagnose_rig(listed, os.path.abspath(out), seed, threads))
 
 
 def main() -> int:

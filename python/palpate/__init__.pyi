@@ -1,5 +1,6 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -67,4 +68,20 @@ def export(
     sensor: str | None = None,
     partial: bool = False,
 ) -> str: ...
+@dataclass(frozen=True)
+class FleetRig:
+    name: str
+    rig: str
+    recordings: tuple[str, ...]
+
+@dataclass(frozen=True)
+class RigResult:
+    name: str
+    json: str | None
+    error: str | None
+
+def fleet(source: str | os.PathLike[str], out: str | os.PathLike[str]) -> list[FleetRig]: ...
+def diagnose_rig(
+    rig: FleetRig, out: str | os.PathLike[str], *, seed: int = 1, threads: int = 1
+) -> RigResult: ...
 def main() -> int: ...

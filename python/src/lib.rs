@@ -3,6 +3,7 @@
 mod arguments;
 mod cancellable;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::ValueEnum as _;
@@ -15,6 +16,10 @@ use palpate_lab::diagnose::report::html;
 use palpate_lab::diagnose::{Diagnosis, diagnose as run_diagnosis};
 use palpate_lab::error::InputError;
 use palpate_lab::export::{ExportArgs, Target, export as write_model};
+use palpate_lab::fleet::rig_folder::{ANSWER, RigFolder};
+use palpate_lab::fleet::source::{self, FleetRig};
+use palpate_lab::fleet::worker::Worker;
+use palpate_lab::own_program::{self, OwnProgram};
 use palpate_lab::recording::Recording;
 
 create_exception!(_palpate, NativeInputError, PyValueError, "Place, finding and expectation of an input at fault.");
@@ -109,6 +114,41 @@ fn export(
     Ok((exported.text, exported.notes, left_out))
 }
 
+/// Name, rig file and recordings of a rig of a fleet.
+type ListedRig = (String, PathBuf, Vec<PathBuf>);
+
+/// The rigs of a fleet; see `palpate.fleet`.
+#[pyfunction]
+fn fleet(source: PathBuf, out: PathBuf) -> PyResult<Vec<ListedRig>> {
+    let fleet = source::read(&source, &out).map_err(input_error)?;
+    Ok(fleet.rigs.into_iter().map(|rig| (rig.name, rig.rig, rig.recordings)).collect())
+}
+
+/// Diagnoses one rig of a fleet into its folder below `out`; see `palpate.diagnose_rig`. Its JSON, or why there is none.
+#[pyfunction]
+fn diagnose_rig(
+    py: Python<'_>,
+    rig: ListedRig,
+    out: PathBuf,
+    seed: u64,
+    threads: usize,
+) -> PyResult<(Option<String>, Option<String>)> {
+    let (name, file, recordings) = rig;
+    let rig = FleetRig { name, rig: file, recordings };
+    let result = py.detach(|| Worker::new(seed, threads).map(|worker| worker.diagnose(&rig, &out)));
+    let result = result.map_err(python_error)?;
+    match result.diagnosis {
+        Ok(_) => Ok((Some(std::fs::read_to_string(RigFolder::new(&out, &rig.name).file(ANSWER))?), None)),
+        Err(error) => Ok((None, Some(error))),
+    }
+}
+
+/// Declares the command that starts this package in a process of its own, and the file of this module.
+#[pyfunction]
+fn declare_program(command: Vec<OsString>, file: PathBuf) {
+    own_program::declare(OwnProgram { command, file });
+}
+
 /// The command with its arguments, the program's name first; its exit status.
 #[pyfunction]
 fn command(py: Python<'_>, arguments: Vec<String>) -> u8 {
@@ -122,5 +162,8 @@ fn _palpate(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(diagnose, module)?)?;
     module.add_function(wrap_pyfunction!(read, module)?)?;
     module.add_function(wrap_pyfunction!(export, module)?)?;
+    module.add_function(wrap_pyfunction!(fleet, module)?)?;
+    module.add_function(wrap_pyfunction!(diagnose_rig, module)?)?;
+    module.add_function(wrap_pyfunction!(declare_program, module)?)?;
     module.add_function(wrap_pyfunction!(command, module)?)
 }

@@ -1,4 +1,4 @@
-//! The answer of a diagnosis: the part of its JSON that is scored, read as any user would read it.
+//! The answer of a diagnosis: the part of its JSON that is scored or tabulated, read as any user would read it.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +19,9 @@ pub struct DiagnosisJson {
     pub alternatives: Vec<AlternativeJson>,
     /// How well the models fit.
     pub fit: FitJson,
+    /// The values of the rig file, refitted.
+    #[serde(default)]
+    pub nominal: Vec<NominalJson>,
     /// What the recordings themselves showed, and what limits the answer.
     #[serde(default)]
     pub findings: Vec<FindingJson>,
@@ -30,6 +33,9 @@ pub struct FindingJson {
     /// What it is, for programs: "one_speed".
     #[serde(default)]
     pub code: String,
+    /// Whether it casts doubt on the answer.
+    #[serde(default)]
+    pub grave: bool,
 }
 
 /// A named effect.
@@ -37,8 +43,38 @@ pub struct FindingJson {
 pub struct PhysicsJson {
     /// Its name, or "unknown".
     pub name: String,
+    /// "contact", "drive" or "sensor"; the channel where unknown.
+    #[serde(default)]
+    pub acts_in: String,
+    /// Why one should believe it.
+    #[serde(default)]
+    pub evidence: EvidenceJson,
     /// Its parameters.
     pub parameters: Vec<ParameterJson>,
+}
+
+/// Why one should believe a named effect; what is no number is `None`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct EvidenceJson {
+    /// Of the power above the expected noise that the law leaves without it on rows that no fit saw, the share that it takes away.
+    pub held_out_gain: Option<f64>,
+    /// Probability that chance alone does as much somewhere among all effects.
+    pub p_value: Option<f64>,
+}
+
+/// A value of the rig file; what is no number is `None`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct NominalJson {
+    /// Key of the rig file.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// In the rig file.
+    pub given: Option<f64>,
+    /// Refitted, with the named physics.
+    pub fitted: Option<f64>,
+    /// The 95 % interval; open where a side is `None`.
+    pub ci95: [Option<f64>; 2],
 }
 
 /// A parameter; what is no number is `None`.
@@ -64,10 +100,16 @@ pub struct AlternativeJson {
 /// Root mean squares on data that no fit saw.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct FitJson {
+    /// "force" or "effort".
+    #[serde(default)]
+    pub channel: String,
     /// "N" or "N m".
     pub unit: String,
     /// Expected noise.
     pub noise_floor: Option<f64>,
+    /// The rig file as it stands.
+    #[serde(default)]
+    pub as_given: Option<f64>,
     /// The nominal physics, values refitted.
     pub refitted: Option<f64>,
     /// With the named physics.
@@ -75,6 +117,9 @@ pub struct FitJson {
     /// With what was learned beside it, where something was.
     #[serde(default)]
     pub learned: Option<f64>,
+    /// Share of the energy above the expected noise, that refitted values leave, which the named physics takes away.
+    #[serde(default)]
+    pub explained_share: Option<f64>,
 }
 
 impl DiagnosisJson {
@@ -107,9 +152,8 @@ mod tests {
     #[test]
     fn a_residual_is_held_against_an_expected_noise_above_zero() {
         let over = |floor, rms| {
-            let fit =
-                FitJson { unit: "N".to_owned(), noise_floor: floor, refitted: None, improved: None, learned: None };
-            fit.over_floor(rms)
+            let json = serde_json::json!({"unit": "N", "noise_floor": floor, "refitted": null, "improved": null});
+            serde_json::from_value::<FitJson>(json).unwrap().over_floor(rms)
         };
         assert_eq!(over(Some(0.5), Some(2.0)), Some(4.0));
         assert_eq!([over(Some(0.0), Some(2.0)), over(None, Some(2.0)), over(Some(0.5), None)], [None; 3]);

@@ -18,21 +18,25 @@ const ANSWER_FILE: &str = "diagnosis.json";
 /// # Errors
 /// The command cannot be started, or the answer of an interrupted run cannot be removed.
 pub fn run_diagnosis(tool: &Path, folder: &Path, arguments: &[&str]) -> Result<(Result<DiagnosisJson, String>, f64)> {
-    let answer = folder.join(ANSWER_FILE);
+    let mut command = Command::new(tool);
+    command.args(["diagnose", "--rig", "rig.toml", "--json", ANSWER_FILE]).args(arguments).current_dir(folder);
+    run_command(&mut command, &folder.join(ANSWER_FILE))
+}
+
+/// Runs `command`, which writes its answer to `answer`, in a process of its own: whatever becomes of that, this one goes on.
+///
+/// # Errors
+/// The command cannot be started, or the answer of an earlier run cannot be removed.
+pub fn run_command(command: &mut Command, answer: &Path) -> Result<(Result<DiagnosisJson, String>, f64)> {
     if answer.exists() {
-        std::fs::remove_file(&answer).with_context(|| format!("cannot remove {}", answer.display()))?;
+        std::fs::remove_file(answer).with_context(|| format!("cannot remove {}", answer.display()))?;
     }
     let start = Instant::now();
-    let mut command = Command::new(tool);
-    command
-        .args(["diagnose", "--rig", "rig.toml", "--json", ANSWER_FILE])
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null());
-    let output = interrupt::output(&mut command).with_context(|| format!("cannot run {}", tool.display()))?;
+    let output = interrupt::output(command.stdin(Stdio::null()))
+        .with_context(|| format!("cannot run {}", command.get_program().display()))?;
     let seconds = start.elapsed().as_secs_f64();
     let diagnosis = if output.status.success() {
-        read_answer(&answer)
+        read_answer(answer)
     } else {
         let errors = String::from_utf8_lossy(&output.stderr);
         Err(format!("{}: {}", output.status, errors.lines().last().unwrap_or("no message")))
@@ -40,7 +44,11 @@ pub fn run_diagnosis(tool: &Path, folder: &Path, arguments: &[&str]) -> Result<(
     Ok((diagnosis, seconds))
 }
 
-fn read_answer(path: &Path) -> Result<DiagnosisJson, String> {
+/// The answer that a diagnosis left at `path`, or why there is none.
+///
+/// # Errors
+/// There is no such file, or it is none of [`SCHEMA`].
+pub fn read_answer(path: &Path) -> Result<DiagnosisJson, String> {
     let text = std::fs::read_to_string(path).map_err(|error| format!("no answer was written: {error}"))?;
     let answer: DiagnosisJson =
         serde_json::from_str(&text).map_err(|error| format!("an answer that is none of {SCHEMA}: {error}"))?;
