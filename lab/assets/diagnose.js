@@ -110,7 +110,10 @@
   // What shows the answer, or the largest place, with as much again around it: what is off is seen beside what is not.
   function worstSpan({ places, opens, ends, traces }) {
     if (places.length === 0 && !opens) return null;
-    const [start, end] = opens ?? [places[0].start, places[0].end];
+    // A stretch as long as the trial is no closer look.
+    const isShort = opens && opens[1] - opens[0] < 0.5 * (ends[1] - ends[0]);
+    if (!isShort && places.length === 0) return null;
+    const [start, end] = isShort ? opens : [places[0].start, places[0].end];
     const { time } = traces[0];
     const row = (ends[1] - ends[0]) / Math.max(1, time.length);
     const margin = Math.max(0.5 * (end - start), 10 * row);

@@ -4,6 +4,7 @@ mod answer;
 pub(crate) mod column;
 mod document;
 mod embed;
+pub(crate) mod neighbour;
 pub(crate) mod quantity;
 pub(crate) mod shell;
 pub(crate) mod table;
@@ -20,6 +21,8 @@ pub struct Page {
     pub ran_on: String,
     /// Settings that held for every trial, as label and value ("window", "300 samples").
     pub settings: Vec<(String, String)>,
+    /// The page of a diagnosis beside this one, where there is one.
+    pub diagnosis: Option<String>,
     /// One entry a recording, in the order of the command line.
     pub trials: Vec<Trial>,
 }

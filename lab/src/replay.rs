@@ -22,7 +22,7 @@ use crate::rig::Rig;
 use crate::terminal::printable;
 use crate::tools::Leave;
 pub use options::{LossChoice, Options, VelocityChoice};
-pub use outputs::Outputs;
+pub use outputs::{Outputs, REPLAY_PAGE};
 pub use plan::Plan;
 pub use table::interval;
 pub use trace::Trace;

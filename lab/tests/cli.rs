@@ -225,6 +225,44 @@ fn what_is_simulated_is_replayed_to_the_rigs_own_figures() {
     assert!(covered as f64 > 0.9 * known.len() as f64, "{covered} of {} intervals of 95 % hold 300 N/m", known.len());
 }
 
+/// Where nothing is missing, the drive's law and that of the diagnosis give one stiffness and one damping of one recording, and the pages link
+/// to one another.
+#[test]
+fn replay_and_diagnosis_of_one_recording_agree_within_their_intervals() {
+    let folder = TempDir::new().expect("a folder");
+    let text = fs::read_to_string(bench_rig()).expect("a rig").replace("duration_s = 60.0", "duration_s = 9.0");
+    fs::write(folder.path().join("rig.toml"), text.replace("period_s = 30.0", "period_s = 16.0")).expect("a rig file");
+    let run = |arguments: &[&str]| {
+        let done = palpate().current_dir(&folder).args(arguments).assert().success();
+        String::from_utf8(done.get_output().stdout.clone()).expect("text")
+    };
+    run(&["simulate", "--rig", "rig.toml", "--seed", "3", "--out", "trial.csv"]);
+    let shown = run(&["replay", "--rig", "rig.toml", "trial.csv", "--out", "."]);
+    let diagnosis = run(&["diagnose", "--rig", "rig.toml", "trial.csv", "--json", "-", "--report", "report.html"]);
+    let diagnosis: serde_json::Value = serde_json::from_str(&diagnosis).expect("JSON");
+    assert_eq!(diagnosis["physics"].as_array().map(Vec::len), Some(0), "{diagnosis}");
+    // "trial.csv cusum_rls 300.0 ± 1.5 4.992 ± 0.049 0.62"
+    let row = shown.lines().find(|line| line.contains("cusum_rls")).expect("the recommended law");
+    let numbers: Vec<f64> = row.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    for (key, [value, half_width]) in
+        [("stiffness_n_m", [numbers[0], numbers[1]]), ("damping_n_s_m", [numbers[2], numbers[3]])]
+    {
+        let nominal = diagnosis["nominal"].as_array().expect("nominal values");
+        let found = nominal.iter().find(|value| value["name"] == key).unwrap_or_else(|| panic!("{key}: {diagnosis}"));
+        let [low, high] = [0, 1].map(|end| found["ci95"][end].as_f64().expect("an end"));
+        assert!(
+            low <= value + half_width && value - half_width <= high,
+            "{key}: replay {value} ± {half_width}, diagnosis {low} to {high}"
+        );
+    }
+    let page = |name: &str| fs::read_to_string(folder.path().join(name)).expect("a page");
+    assert!(page("report.html").contains("<a href=\"replay.html\">"));
+    run(&["replay", "--rig", "rig.toml", "trial.csv", "--out", "."]);
+    assert!(page("replay.html").contains("<a href=\"report.html\">"));
+    // One contact from the second second on, however it bounces at its start.
+    assert!(page("replay.html").contains("in contact (one touch)"), "touches");
+}
+
 #[test]
 fn a_simulated_trial_has_the_column_names_of_its_rig() {
     let folder = TempDir::new().expect("a folder");

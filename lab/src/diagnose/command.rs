@@ -18,8 +18,9 @@ use crate::error::{InputError, UsageError};
 use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
 use crate::output_paths;
-use crate::page::quantity;
+use crate::page::{neighbour, quantity};
 use crate::recording::Recording;
+use crate::replay::REPLAY_PAGE;
 use crate::rig::Rig;
 use crate::terminal::printable;
 
@@ -148,6 +149,7 @@ fn run_record(args: &DiagnoseArgs) -> Result<Run> {
         command: words.join(" "),
         seed: args.seed,
         inputs: inputs().map(hashed).collect::<Result<_>>()?,
+        replay_page: args.report.as_deref().and_then(|page| neighbour::beside(page, &[REPLAY_PAGE], "palpate replay")),
     })
 }
 

@@ -68,7 +68,7 @@ pub fn separating_trial(rig: &Rig, found: &Found, trials: &[Recording]) -> Optio
     let plan = plan(&situation)?;
     let told = words.iter().zip(&plan.expected).map(|(words, energy)| {
         let enough = if *energy >= DECISIVE_ENERGY { "it decides" } else { "too little to decide for certain" };
-        format!("{words}: {enough} ({:.1} of {DECISIVE_ENERGY:.0})", energy.min(999.0))
+        format!("{words}: {enough}")
     });
     let text = format!(
         "{}. It goes no farther, quicker or harder than the recordings did. What it is expected to tell: {}.",

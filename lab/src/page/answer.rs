@@ -14,9 +14,31 @@ impl Contact {
     fn of(trial: &Trial) -> Self {
         let steps = trial.time.windows(2).zip(&trial.contact);
         let seconds = steps.filter(|(_, contact)| **contact).map(|(step, _)| step[1] - step[0]).sum();
-        let begins = trial.contact.windows(2).filter(|pair| !pair[0] && pair[1]).count();
-        Self { seconds, touches: begins + usize::from(trial.contact.first() == Some(&true)) }
+        Self { seconds, touches: touches_of(trial) }
     }
+}
+
+/// Break between two stretches of contact, over the longer of them, below which the tool bounced and they are one touch.
+const BOUNCE: f64 = 0.1;
+
+/// Touches as a person counts them: the bounces of one are no touches of their own.
+fn touches_of(trial: &Trial) -> usize {
+    let mut stretches: Vec<[f64; 2]> = Vec::new();
+    for (row, time) in trial.time.iter().enumerate().filter(|(row, _)| trial.contact.get(*row) == Some(&true)) {
+        match stretches.last_mut() {
+            Some(last) if row > 0 && trial.contact[row - 1] => last[1] = *time,
+            _ => stretches.push([*time, *time]),
+        }
+    }
+    let length = |[start, end]: [f64; 2]| end - start;
+    let mut touches: Vec<[f64; 2]> = Vec::new();
+    for stretch in stretches {
+        match touches.last_mut() {
+            Some(last) if stretch[0] - last[1] < BOUNCE * length(*last).max(length(stretch)) => last[1] = stretch[1],
+            _ => touches.push(stretch),
+        }
+    }
+    touches.len()
 }
 
 /// What one recording says.

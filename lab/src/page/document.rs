@@ -39,6 +39,7 @@ fn limits(page: &Page) -> Markup {
         p.law {
             "Intervals are those that the drive computes: they hold where the contact is such a spring and damper and the noise is white, and ignore what other physics leaves. "
             "Whether other physics acts: " code { "palpate diagnose --rig RIG.toml " (names.join(" ")) @if page.trials.len() > 2 { " ..." } }
+            @if let Some(diagnosis) = &page.diagnosis { " (" a href=(diagnosis) { "the diagnosis beside this page" } ")" }
             ". Its K and B are those of one law for all recordings, with intervals widened by what the law leaves; here they are medians over the contact. Where it names physics, the two differ."
         }
     }

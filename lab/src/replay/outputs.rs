@@ -8,13 +8,20 @@ use super::{Options, Place, Replayed, estimates};
 use crate::error::InputError;
 use crate::outfile::OutFile;
 use crate::output_paths;
-use crate::page::{Page, Trial, Units};
+use crate::page::{Page, Trial, Units, neighbour};
 use crate::rig::{Coordinate, Rig};
+
+/// The page's name in its folder.
+pub const REPLAY_PAGE: &str = "replay.html";
+
+/// Names that the page of a diagnosis beside it is looked for under.
+const DIAGNOSIS_PAGES: [&str; 3] = ["report.html", "diagnosis.html", "diagnose.html"];
 
 /// The output files, opened before the work so that a place that cannot be written shows at once.
 pub struct Outputs {
     estimates: Vec<OutFile>,
     page: OutFile,
+    folder: PathBuf,
 }
 
 impl Outputs {
@@ -39,12 +46,12 @@ impl Outputs {
             make(&place)?;
             places.push(place.join("estimates.csv"));
         }
-        let page = folder.join("replay.html");
+        let page = folder.join(REPLAY_PAGE);
         let inputs: Vec<&Path> = trials.iter().map(PathBuf::as_path).chain([rig]).collect();
         let outputs: Vec<_> = places.iter().chain([&page]).map(|place| ("--out", place.as_path())).collect();
         output_paths::check(&inputs, &outputs)?;
         let estimates = places.iter().map(|place| OutFile::create(place)).collect::<Result<_, _>>()?;
-        Ok(Self { estimates, page: OutFile::create(&page)? })
+        Ok(Self { estimates, page: OutFile::create(&page)?, folder: folder.to_owned() })
     }
 
     /// Writes what was replayed, whole or not at all.
@@ -55,7 +62,9 @@ impl Outputs {
         for (file, replayed) in self.estimates.into_iter().zip(replayed) {
             estimates::write(file, rig.coordinate, replayed)?;
         }
-        page(rig, replayed, options, place).write(&mut self.page).map_err(|error| self.page.fault(&error))?;
+        let diagnosis = neighbour::beside(&self.folder.join(REPLAY_PAGE), &DIAGNOSIS_PAGES, "palpate diagnose");
+        let page = Page { diagnosis, ..page(rig, replayed, options, place) };
+        page.write(&mut self.page).map_err(|error| self.page.fault(&error))?;
         Ok(self.page.commit()?)
     }
 }
@@ -69,6 +78,7 @@ fn page(rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Pa
             Place::Qemu => "Cortex-M4F under QEMU".to_owned(),
         },
         settings: options.in_words(),
+        diagnosis: None,
         trials: replayed
             .iter()
             .map(|r| Trial {

@@ -159,7 +159,7 @@ pub fn page(rig: &str, trials: Vec<Trial>) -> Page {
         ("velocity cut-off", "20 Hz"),
     ];
     let settings = settings.iter().map(|(label, value)| (label.to_string(), value.to_string())).collect();
-    Page { rig: rig.into(), ran_on: "host".into(), settings, trials }
+    Page { rig: rig.into(), ran_on: "host".into(), settings, diagnosis: Some("report.html".into()), trials }
 }
 
 /// Three touches in three seconds.

@@ -297,6 +297,7 @@ fn run() -> Run {
         command: "palpate diagnose --rig bench.toml trial-1.csv trial-2.csv --seed 1".into(),
         seed: 1,
         inputs: vec![("bench.toml".into(), "ab".repeat(32))],
+        replay_page: Some("replay.html".into()),
     }
 }
 

@@ -235,6 +235,8 @@ pub struct Run {
     pub seed: u64,
     /// Every input file with its SHA-256.
     pub inputs: Vec<(String, String)>,
+    /// The page of a replay beside this one, where there is one.
+    pub replay_page: Option<String>,
 }
 
 /// One channel of one trial over time. All vectors are of equal length.

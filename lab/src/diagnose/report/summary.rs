@@ -6,7 +6,7 @@ use crate::page::quantity;
 use crate::rig::Coordinate;
 
 /// Residual over the sensors' own that is still called theirs: their noise is known to some 15 %.
-const MOST_OVER_NOISE: f64 = 1.15;
+pub(super) const MOST_OVER_NOISE: f64 = 1.15;
 
 /// Share of a mismatch from which a place holds most of it.
 pub const MOST: f64 = 0.5;

@@ -1,6 +1,7 @@
 //! How well the models fit: up to five bars a channel.
 
 use super::super::diagnosis::{Diagnosis, FitQuality, Verdict};
+use super::super::summary::MOST_OVER_NOISE;
 use super::axis::{Axis, across};
 use super::names_physics;
 use super::wording::{channel, heading, multiple, share, times};
@@ -96,11 +97,19 @@ fn analysed(goodness: &FitQuality) -> String {
     if known { format!("Analysed up to {}. ", rounded(goodness.band_hz, "Hz", 3)) } else { String::new() }
 }
 
+/// Whether refitted values alone leave what the sensors do.
+fn is_told_by_noise(goodness: &FitQuality) -> bool {
+    goodness.refitted < MOST_OVER_NOISE * goodness.noise_floor
+}
+
 fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     let left = multiple(goodness.refitted / goodness.noise_floor);
     let name = channel(goodness.channel);
+    let is_named = answer.physics.iter().any(|one| one.name != "unknown" && one.channel == goodness.channel);
     html! {
-        @if names_physics(answer) {
+        @if !is_named && is_told_by_noise(goodness) {
+            "Refitted values leave no more in the " (name) " than the expected noise: nothing is missing there."
+        } @else if names_physics(answer) {
             "Of what refitted values leave in the " (name) " above the noise, the named physics takes away "
             strong { (share(goodness.explained_share)) } "."
         } @else if answer.verdict == Verdict::Unknown {

@@ -40,6 +40,7 @@ fn replayed(answer: &Diagnosis, pictures: &PlotData) -> Markup {
                 "Stiffness and damping of these recordings as a drive estimates them, moment by moment: "
                 code { "palpate replay" }
                 @if let Some(run) = &pictures.run { " (" code { (run.command.replace("palpate diagnose", "palpate replay").split(" --").take(2).collect::<Vec<_>>().join(" --")) } ")" }
+                @if let Some(replay) = pictures.run.as_ref().and_then(|run| run.replay_page.as_ref()) { ": " a href=(replay) { "the replay beside this page" } }
                 ". Its law is a spring and a damper alone and its answer the median over the contact"
                 @if names_physics(answer) { ", so it differs from the values above, which hold beside the named physics." }
                 @else if answer.physics.is_empty() { ": it agrees with the values above within both intervals, unless stiffness changes along the way." }

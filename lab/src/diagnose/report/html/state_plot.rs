@@ -142,9 +142,12 @@ fn grid(frame: &Frame, plot: &StatePlot) -> Markup {
             text.soft x=(across(LEFT - 0.012)) y=(y) dy="4" text-anchor="end" { (short(tick / y_factor).replace('-', "−")) }
         }
         @for tick in ticks(frame.x, x_factor) {
-            @let x = across(LEFT + share(tick, frame.x) * (1.0 - LEFT));
+            @let along = share(tick, frame.x);
+            @let x = across(LEFT + along * (1.0 - LEFT));
+            // A number in the middle of the last line would be cut by the edge.
+            @let anchor = if along > 0.96 { "end" } else { "middle" };
             line.decade.zero[tick == 0.0] x1=(x) x2=(x) y1=(TOP) y2=(BOTTOM) {}
-            text.soft x=(x) y=(BOTTOM + 18.0) text-anchor="middle" { (short(tick / x_factor).replace('-', "−")) }
+            text.soft x=(x) y=(BOTTOM + 18.0) text-anchor=(anchor) { (short(tick / x_factor).replace('-', "−")) }
         }
         text x=(across(LEFT)) dx="6" y=(TOP + 12.0) { (plot.ordinate) ", " (y_unit) }
         text x="100%" y=(BOTTOM + 38.0) text-anchor="end" { (plot.along) ", " (x_unit) }
