@@ -33,7 +33,9 @@ pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
 
 /// Where the estimators of a drive give other values of the same recording, and why.
 fn replayed(answer: &Diagnosis, pictures: &PlotData) -> Markup {
-    let touches = answer.nominal.iter().any(|value| value.name.starts_with("stiffness"));
+    let stiffness = answer.nominal.iter().find(|value| value.name.starts_with("stiffness"));
+    let touches = stiffness.is_some();
+    let is_bounded = stiffness.is_some_and(|value| value.ci95[1] - value.ci95[0] < 2.0 * value.fitted.abs());
     html! {
         @if touches {
             p.fine {
@@ -43,6 +45,7 @@ fn replayed(answer: &Diagnosis, pictures: &PlotData) -> Markup {
                 @if let Some(replay) = pictures.run.as_ref().and_then(|run| run.replay_page.as_ref()) { ": " a href=(replay) { "the replay beside this page" } }
                 ". Its law is a spring and a damper alone and its answer the median over the contact"
                 @if names_physics(answer) { ", so it differs from the values above, which hold beside the named physics." }
+                @else if !is_bounded { ". These recordings bound neither, and a replay will not bound them either." }
                 @else if answer.physics.is_empty() { ": it agrees with the values above within both intervals, unless stiffness changes along the way." }
                 @else { "; where physics is missing, either is a compromise, and they weigh the rows differently." }
             }
