@@ -119,8 +119,11 @@ impl Comparison {
     }
 }
 
+/// Effect, name, unit and number of a value.
+type ValueKey<'a> = (&'a str, &'a str, &'a str, usize);
+
 /// The values of `rig`, by effect, name, unit and number among those of the same name.
-fn keyed(rig: Rig<'_>) -> Vec<((&str, &str, &str, usize), &Row)> {
+fn keyed(rig: Rig<'_>) -> Vec<(ValueKey<'_>, &Row)> {
     let mut counts = BTreeMap::new();
     rig.values()
         .map(|row| {

@@ -89,7 +89,7 @@ pub struct Outlier {
 /// The quantities of `table` that at least two rigs have: those of the rig files, of effects, and the residual over the noise.
 #[must_use]
 pub fn quantities(table: &Table) -> Vec<Quantity> {
-    let mut groups: BTreeMap<(bool, String, String, String), Vec<(&str, [f64; 3], Option<f64>)>> = BTreeMap::new();
+    let mut groups: BTreeMap<(bool, String, String, String), Vec<RigValue<'_>>> = BTreeMap::new();
     for rig in table.rigs() {
         for (key, value, given) in values(rig) {
             let (effect, parameter, unit) = key;
@@ -103,6 +103,10 @@ pub fn quantities(table: &Table) -> Vec<Quantity> {
     several.map(|((_, effect, parameter, unit), points)| quantity(effect, parameter, unit, &points)).collect()
 }
 
+/// Name of a rig, estimate with its interval, and what the rig file states.
+type RigValue<'a> = (&'a str, [f64; 3], Option<f64>);
+
+/// Effect, name and unit of a value, estimate with its interval, and what the rig file states.
 type Value = ((String, String, String), [f64; 3], Option<f64>);
 
 /// The first value of each name of `rig`, and what its rig file states.
@@ -124,9 +128,9 @@ fn end(given: Option<f64>) -> f64 {
     given.unwrap_or(f64::NAN)
 }
 
-fn quantity(effect: String, parameter: String, unit: String, points: &[(&str, [f64; 3], Option<f64>)]) -> Quantity {
+fn quantity(effect: String, parameter: String, unit: String, points: &[RigValue<'_>]) -> Quantity {
     let is_relative = points.iter().all(|(_, _, given)| given.is_some());
-    let scaled = |(rig, value, given): &(&str, [f64; 3], Option<f64>)| {
+    let scaled = |(rig, value, given): &RigValue<'_>| {
         let over = given.filter(|_| is_relative).unwrap_or(1.0);
         let [value, low, high] = value.map(|number| number / over);
         // A negative value of the rig file turns the interval round.

@@ -129,8 +129,10 @@ mod tests {
     fn names_are_links_that_no_character_breaks_and_text_that_no_markup_enters() {
         assert_eq!(percent_encoded("a b/ü#?<%"), "a%20b%2F%C3%BC%23%3F%3C%25");
         let html = page(&Table::of(&[failed("<b>", "found <i>, expected &")]), None);
-        assert!(html.contains("rigs/%3Cb%3E/report.html") || html.contains("&lt;b&gt;"));
+        assert!(html.contains("&lt;b&gt;") && html.contains("found &lt;i&gt;, expected &amp;"));
         assert!(!html.contains("<b>") && !html.contains("<i>"));
+        assert!(!html.contains("report.html"), "a rig that failed has no report");
+        assert!(page(&Table::of(&[result("a b", &[], 300.0)]), None).contains("href=\"rigs/a%20b/report.html\""));
     }
 
     #[test]

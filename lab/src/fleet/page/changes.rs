@@ -30,11 +30,20 @@ fn table(rigs: &[RigChanges]) -> Markup {
             thead { tr { th { "rig" } th.text { "what" } th.text { "before" } th.text { "now" } } }
             tbody { @for rig in rigs { @for (at, change) in rig.changes.iter().enumerate() {
                 tr.more[at > 0] {
-                    th scope="row" { @if at == 0 { @if change == &Change::Gone { (rig.rig) } @else { (link(&rig.rig)) } } }
+                    th scope="row" { @if at == 0 { @if !has_report(change) { (rig.rig) } @else { (link(&rig.rig)) } } }
                     (row(change))
                 }
             } } }
         } }
+    }
+}
+
+/// Whether this run wrote a report of the rig; the gravest change tells.
+fn has_report(change: &Change) -> bool {
+    match change {
+        Change::Gone | Change::Failed(_) => false,
+        Change::New(verdict) => !verdict.is_empty(),
+        _ => true,
     }
 }
 

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::link;
 use crate::fleet::outliers::{FarValue, MAX_Z, MIN_RIGS, Outlier, Reason, label};
 use crate::fleet::table::Table;
-use crate::page::quantity::{percent, plain, rounded};
+use crate::page::quantity::{plain, rounded};
 
 pub(super) fn section(table: &Table, outliers: &[Outlier]) -> Markup {
     let diagnosed = table.rigs().filter(|rig| !rig.is_failed()).count();
@@ -16,7 +16,9 @@ pub(super) fn section(table: &Table, outliers: &[Outlier]) -> Markup {
                 div.wide tabindex="0" role="region" aria-label="Which rigs stand out" { table.outliers {
                     thead { tr { th { "rig" } th.text { "why" } } }
                     tbody { @for outlier in outliers { tr {
-                        th scope="row" { (link(&outlier.rig)) }
+                        th scope="row" {
+                            @if matches!(outlier.reasons[..], [Reason::Failed(_), ..]) { (outlier.rig) } @else { (link(&outlier.rig)) }
+                        }
                         td.text { ul { @for reason in &outlier.reasons { li { (words(reason)) } } } }
                     } } }
                 } }
@@ -60,5 +62,9 @@ fn value(far: &FarValue) -> Markup {
 
 /// A value of a quantity; a share of what the rig file states in per cent.
 pub(super) fn number(value: f64, unit: &str, is_relative: bool) -> String {
-    if is_relative && (0.01..10.0).contains(&value.abs()) { percent(100.0 * value) } else { plain(value, unit) }
+    if is_relative && (0.01..10.0).contains(&value.abs()) {
+        format!("{}\u{a0}%", rounded(100.0 * value, "1", 4))
+    } else {
+        plain(value, unit)
+    }
 }
