@@ -181,6 +181,8 @@ fn what_is_no_fleet_and_what_is_no_output_are_refused() {
     refused("nowhere", "out", &[], "no such file or folder");
     fs::create_dir(night.path("bare")).unwrap();
     refused("bare", "out", &[], "no rig");
+    // Though it looks like an output: one of its rigs is called as the folder of the rigs is.
+    night.replace("rigs", "plain");
     refused("fleet", "fleet", &[], "the fleet itself");
     night.write("thesis/thesis.tex", "");
     refused("fleet", "thesis", &[], "something else");
