@@ -22,6 +22,7 @@ pub mod law;
 pub mod links;
 pub mod matrix;
 pub mod median;
+pub mod missing_force;
 pub mod model;
 pub mod named;
 pub mod noise;

@@ -6,9 +6,9 @@ pub const LEAST_GAIN: f64 = 10.0;
 /// See [`LEAST_GAIN`].
 pub const LEAST_GAIN_PER_VALUE: f64 = 5.0;
 
-/// Vuong's statistic over blocks, in deviations: the gain has to be there throughout, not in one place. Three deviations are one
-/// chance in 700 (Vuong, *Econometrica* 57, 1989).
-pub const LEAST_VUONG: f64 = 3.0;
+/// Vuong's or Clarke's statistic over blocks, in deviations: the gain has to be there throughout, not in one place. Three deviations are
+/// one chance in 700 (Vuong, *Econometrica* 57, 1989; Clarke, *Political Analysis* 15, 2007).
+pub const LEAST_THROUGHOUT: f64 = 3.0;
 
 /// Length of a block over which row likelihoods are taken together, s: longer than innovations of a wrong model remember.
 pub const BLOCK_S: f64 = 0.5;

@@ -1,7 +1,7 @@
 //! What a model leaves of rows that its values were not fitted to.
 
-use super::filter::innovations;
 use super::fit::{Data, Fit, search_values};
+use super::missing_force::missing_force;
 use super::noise::Noise;
 use super::trial::DriveTrial;
 
@@ -53,7 +53,7 @@ impl Folds {
             search_values(&own, &fit.model, &mut values, &fit.noise, STEPS);
             let law = fit.model.law(&values);
             for (piece, (trial, start)) in self.halves[1 - half].iter().zip(&self.places[1 - half]) {
-                let force = innovations(piece, &law, common, true).disturbance;
+                let force = missing_force(piece, &law, &fit.noise, common);
                 missing[*trial][*start..*start + force.len()].copy_from_slice(&force);
             }
             values
@@ -64,9 +64,9 @@ impl Folds {
 
 /// What fixed values leave, a column a trial.
 #[must_use]
-pub fn missing_force(data: &Data<'_>, fit: &Fit, common: &Noise) -> Vec<Vec<f64>> {
+pub fn missing_forces(data: &Data<'_>, fit: &Fit, common: &Noise) -> Vec<Vec<f64>> {
     let law = fit.model.law(&fit.values);
-    data.trials.iter().map(|trial| innovations(trial, &law, common, true).disturbance).collect()
+    data.trials.iter().map(|trial| missing_force(trial, &law, &fit.noise, common)).collect()
 }
 
 /// Root mean square over all trials.

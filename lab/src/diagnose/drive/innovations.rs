@@ -11,4 +11,6 @@ pub struct Innovations {
     pub velocity: Vec<f64>,
     /// Smoothed force that the law lacks, mean over the interval that ends at the row, N or N m. Empty unless asked for.
     pub disturbance: Vec<f64>,
+    /// Encoder row less its smoothed position, m or rad; zero where a stretch starts. Of two bodies, where the disturbance was asked for.
+    pub residual: Vec<f64>,
 }

@@ -20,8 +20,15 @@ const COMPLIANCE_HZ: [f64; 3] = [6.0, 15.0, 40.0];
 const PLAY_HZ: f64 = 60.0;
 const FASTEST_PER_ROW: f64 = 0.3;
 
-/// Gaps that are tried, in steps of the encoder.
-const GAPS: [f64; 3] = [2.0, 6.0, 20.0];
+/// The narrowest gap that is tried, in steps of the encoder, the factor to the next, and the widest, as a part of the travel.
+const NARROWEST_GAP: f64 = 2.0;
+const GAP_FACTOR: f64 = 4.0;
+const WIDEST_GAP: f64 = 0.01;
+
+/// Density of the disturbance to begin with, over that of the law without the link. With that law's own, the filter follows every row
+/// of the encoder whatever the link, and the likelihood has a maximum there; with a quiet one the link has to explain the motion.
+/// Chosen; a factor of ten either way finds the same plays.
+const QUIET: f64 = 1e-3;
 
 /// Starts that are followed to their end, and the turns that takes.
 const FOLLOWED: usize = 4;
@@ -76,23 +83,34 @@ fn starts(base: &Fit, sides: &[Side]) -> Vec<Fit> {
     let mut all = Vec::new();
     for side in sides {
         for hz in COMPLIANCE_HZ {
-            all.push((Term::Compliance(*side), hz, None));
+            all.push((Term::Compliance(*side), hz, None, 1.0));
+            all.push((Term::Compliance(*side), hz, None, QUIET));
         }
-        for gap in GAPS {
-            all.push((Term::Play(*side), PLAY_HZ, Some(gap * scales.resolution)));
-        }
+        all.extend(gaps(scales).map(|gap| (Term::Play(*side), PLAY_HZ, Some(gap), QUIET)));
     }
     let is_slow_enough = |hz: &f64| *hz * scales.period_s < FASTEST_PER_ROW;
     all.into_iter()
-        .filter(|(_, hz, _)| is_slow_enough(hz))
-        .map(|(term, hz, gap)| {
+        .filter(|(_, hz, ..)| is_slow_enough(hz))
+        .map(|(term, hz, gap, density)| {
             let own = link(hz).into_iter().chain(gap);
             let mut fit = base.clone();
+            fit.noise.ln_disturbance += density.ln();
+            if density < 1.0 {
+                // The delay that a rigid law needed stands for the link.
+                fit.values[index::DELAY] = 0.0;
+            }
             fit.values.extend(own);
             fit.model.terms.push(term);
             fit
         })
         .collect()
+}
+
+/// Gaps to begin with, m or rad: a basin of the likelihood is some factor wide, and a gap may be one step of the encoder or thousands.
+fn gaps(scales: &Scales) -> impl Iterator<Item = f64> {
+    let narrowest = NARROWEST_GAP * scales.resolution;
+    let widest = (WIDEST_GAP * scales.travel).max(GAP_FACTOR.powi(2) * narrowest);
+    std::iter::successors(Some(narrowest), |gap| Some(gap * GAP_FACTOR)).take_while(move |gap| *gap <= widest)
 }
 
 /// The stretch of a trial in which the disturbance is largest.

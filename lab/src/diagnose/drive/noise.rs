@@ -1,5 +1,7 @@
 //! What is random: the encoder's noise and the force that no law accounts for.
 
+use super::median::median;
+
 use std::f64::consts::TAU;
 
 /// Densities of the random part. The disturbance is white: dv = ... + sqrt(density) / inertia dW.
@@ -46,15 +48,26 @@ impl Noise {
     }
 }
 
+/// Coefficients of a sixth difference.
+const DIFFERENCE: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
+
 /// Variance of the white noise in `values`, by their sixth differences: a motion that a polynomial of the fifth degree
 /// follows over seven rows leaves none. The coefficients' squares sum to 924.
 #[must_use]
 pub fn white_variance(values: &[f64]) -> f64 {
-    const COEFFICIENTS: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
-    let windows = values.windows(COEFFICIENTS.len());
+    let windows = values.windows(DIFFERENCE.len());
     let count = windows.len().max(1) as f64;
-    let square = |window: &[f64]| window.iter().zip(COEFFICIENTS).map(|(x, c)| c * x).sum::<f64>().powi(2);
-    windows.map(square).sum::<f64>() / (924.0 * count)
+    windows.map(sixth_difference_squared).sum::<f64>() / (924.0 * count)
+}
+
+/// The same by the median of the squares, over that of a squared Gaussian of variance one: a few jumps of the signal do not count.
+#[must_use]
+pub fn robust_white_variance(values: &[f64]) -> f64 {
+    median(values.windows(DIFFERENCE.len()).map(sixth_difference_squared)).unwrap_or(0.0) / (0.4549 * 924.0)
+}
+
+fn sixth_difference_squared(window: &[f64]) -> f64 {
+    window.iter().zip(DIFFERENCE).map(|(x, c)| c * x).sum::<f64>().powi(2)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The law that a rig file states of its drive, and its refitted values.
 
 use super::fit::{Data, Effort, Ended, Fit, fit};
-use super::held_out::{missing_force, rms};
+use super::held_out::{missing_forces, rms};
 use super::law::Side;
 use super::model::{Model, index};
 use super::named::known;
@@ -54,7 +54,7 @@ pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Ve
     let under = |rows: f64| {
         let values = [&[rig.inertia, rig.viscous, rows * scales.period_s], effects.as_slice()].concat();
         let fit = Fit { model: model.clone(), values, noise, log_likelihood: 0.0, ended: Ended::Converged };
-        missing_force(&data, &fit, &noise)
+        missing_forces(&data, &fit, &noise)
     };
     DELAY_STARTS.iter().map(|rows| under(*rows)).min_by(|a, b| rms(a).total_cmp(&rms(b)))
 }

@@ -5,15 +5,15 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::criteria::{
-    COMPARISONS, CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_VUONG, MOST_LEFT, UNKNOWN_PART_OF_EFFORT,
+    COMPARISONS, CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_THROUGHOUT, MOST_LEFT, UNKNOWN_PART_OF_EFFORT,
 };
 use super::filter::innovations;
 use super::fit::{Data, Fit};
-use super::held_out::{Folds, HeldOut, missing_force, rms};
+use super::held_out::{Folds, HeldOut, missing_forces, rms};
 use super::interval::intervals;
 use super::law::{DriveLaw, Side};
 use super::model::index;
-use super::noise::{Noise, white_variance};
+use super::noise::{Noise, robust_white_variance, white_variance};
 use super::nominal::{LOWEST_BAND_HZ, NominalDrive, encoder_variance, missing_under, nominal_fit, scales};
 use super::outside_force::{Stretch, outside_forces};
 use super::selection::{Chosen, Search};
@@ -128,12 +128,13 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         search.scales.period_s,
         search.nominal.values[index::INERTIA],
     );
-    let given = missing_force(data, &as_given(search), &common);
+    let given = missing_forces(data, &as_given(search), &common);
     let refitted = folds.held_out(data, &search.nominal, &common);
     let (fit, improved, named) = believed(search, &folds, &common, chosen.fit.clone());
     let expected_noise = expected_noise(search, &fit, &common, seed);
     let spread = intervals(data, &fit, &improved.values);
-    let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], expected_noise);
+    let recorded_noise = expected_noise.hypot(effort_noise(search, &fit, &common, seed));
+    let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], recorded_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
         trials: Vec::new(),
@@ -225,7 +226,8 @@ fn alternatives(
     let is_open = |other: &&Fit| {
         other.model.names() != fit.model.names()
             && other.model.terms.len() <= fit.model.terms.len()
-            && (fit.log_likelihood - other.log_likelihood < LEAST_GAIN || search.worth(fit, other).vuong < LEAST_VUONG)
+            && (fit.log_likelihood - other.log_likelihood < LEAST_GAIN
+                || search.worth(fit, other).throughout < LEAST_THROUGHOUT)
     };
     let open = chosen.sets.iter().filter(is_open).take(MOST_ALTERNATIVES);
     open.map(|other| {
@@ -279,26 +281,50 @@ fn a_curve_does_better(search: &Search<'_>, fit: &Fit) -> bool {
 /// Missing force that the sensors' noise alone would show: the encoder's and the force sensor's, drawn and passed through the same
 /// filter and smoother.
 fn expected_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> f64 {
-    let mut rng = ChaCha12Rng::seed_from_u64(seed);
+    let mut draw = Draw::new(seed);
+    passed(search, fit, common, |trial| {
+        let mut noise = trial.clone();
+        noise.position = draw.white(fit.noise.encoder(), trial.len());
+        noise.effort.fill(0.0);
+        if let Some(force) = &mut noise.force {
+            *force = draw.white(white_variance(force), force.len());
+        }
+        noise
+    })
+}
+
+/// The same of white noise in the recorded effort, which may be its sensor's: what is left below it is not told as physics. Where a
+/// controller commands such noise it moves the drive and nothing of it is left; so it is no part of the expected noise.
+fn effort_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> f64 {
+    let mut draw = Draw::new(seed);
+    passed(search, fit, common, |trial| {
+        let mut noise = trial.clone();
+        noise.position.fill(0.0);
+        noise.effort = draw.white(robust_white_variance(&trial.effort), trial.effort.len());
+        noise.force = None;
+        noise
+    })
+}
+
+/// Missing force of what `noise` makes of each trial under the rigid law of `fit`, N or N m in root mean square.
+fn passed(search: &Search<'_>, fit: &Fit, common: &Noise, noise: impl FnMut(&DriveTrial) -> DriveTrial) -> f64 {
     let law = DriveLaw::nominal(fit.values[index::INERTIA], fit.values[index::VISCOUS], 0.0);
-    let mut drawn = |deviation: f64, count: usize| -> Vec<f64> {
-        (0..count).map(|_| deviation * Distribution::<f64>::sample(&StandardNormal, &mut rng)).collect()
-    };
-    let columns: Vec<Vec<f64>> = search
-        .data
-        .trials
-        .iter()
-        .map(|trial| {
-            let mut noise = trial.clone();
-            noise.position = drawn(fit.noise.encoder().sqrt(), trial.len());
-            noise.effort.fill(0.0);
-            if let Some(force) = &mut noise.force {
-                *force = drawn(white_variance(force).sqrt(), force.len());
-            }
-            innovations(&noise, &law, common, true).disturbance
-        })
-        .collect();
-    rms(&columns)
+    let drawn = search.data.trials.iter().map(noise);
+    rms(&drawn.map(|trial| innovations(&trial, &law, common, true).disturbance).collect::<Vec<_>>())
+}
+
+/// Draws of white Gaussian noise.
+struct Draw(ChaCha12Rng);
+
+impl Draw {
+    fn new(seed: u64) -> Self {
+        Self(ChaCha12Rng::seed_from_u64(seed))
+    }
+
+    fn white(&mut self, variance: f64, count: usize) -> Vec<f64> {
+        let deviation = variance.sqrt();
+        (0..count).map(|_| deviation * Distribution::<f64>::sample(&StandardNormal, &mut self.0)).collect()
+    }
 }
 
 #[cfg(test)]

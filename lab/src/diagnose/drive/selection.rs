@@ -3,14 +3,14 @@
 use super::candidates::{one_body, simpler, tried};
 use super::criteria::{
     BLOCK_ROWS, BLOCK_S, LEAST_FREE_SHAPE_PART, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL,
-    LEAST_PART_OF_EFFORT, LEAST_SHARE, LEAST_VUONG, LINK_PART, NEGLIGIBLE_PART,
+    LEAST_PART_OF_EFFORT, LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, NEGLIGIBLE_PART,
 };
 use super::filter::innovations;
 use super::fit::{Data, Effort, Fit, fit};
 use super::law::Side;
 use super::links;
 use super::term::{Scales, Term};
-use crate::diagnose::model_comparison::vuong;
+use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
 pub struct Search<'a> {
@@ -37,14 +37,12 @@ pub struct Chosen {
 /// What a larger model has over a smaller one.
 #[derive(Debug, Clone, Copy)]
 pub struct Worth {
-    /// Log likelihood, nats.
-    pub gain: f64,
     /// Share of the unexplained power that it takes.
     pub share: f64,
     /// What it takes, in root mean square, over all that the nominal law leaves.
     pub part_of_all: f64,
-    /// Vuong's statistic over blocks.
-    pub vuong: f64,
+    /// Whether the gain is there throughout: the larger of Vuong's and Clarke's statistic over blocks.
+    pub throughout: f64,
 }
 
 /// Sets that each round grows from.
@@ -52,9 +50,6 @@ const BEAM: usize = 2;
 
 /// Terms of a round that are fitted in full.
 const POLISHED: usize = 5;
-
-/// Sets of a round that are judged.
-const JUDGED: usize = 6;
 
 /// Terms at most.
 const MOST_TERMS: usize = 4;
@@ -78,26 +73,30 @@ impl Search<'_> {
         let block = ((BLOCK_S / self.scales.period_s) as usize).max(BLOCK_ROWS);
         let rows = [more, less].map(|fit| self.data.row_log_likelihoods(fit));
         Worth {
-            gain: more.log_likelihood - less.log_likelihood,
             share: taken / power(less).max(f64::MIN_POSITIVE),
             part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),
-            vuong: vuong(&rows[0], &rows[1], block),
+            throughout: vuong(&rows[0], &rows[1], block).max(clarke(&rows[0], &rows[1], block)),
         }
+    }
+
+    /// Whether the likelihood alone speaks for `more`.
+    fn is_likelier(&self, more: &Fit, less: &Fit) -> bool {
+        let values = more.values.len().saturating_sub(less.values.len()).max(1);
+        more.log_likelihood - less.log_likelihood > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
     }
 
     /// Whether `more` is worth its terms.
     #[must_use]
     pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
-        let values = more.values.len().saturating_sub(less.values.len()).max(1);
-        let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape()).count();
+        let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape(&self.scales)).count();
         let least_part = if shapes(more) > shapes(less) { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
         // A law that leaves more than the whole effort follows the encoder's rows and explains none of them.
         self.unexplained(more) < self.scales.effort
-            && worth.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
+            && self.is_likelier(more, less)
             && worth.share > LEAST_SHARE
             && worth.part_of_all > least_part
-            && worth.vuong > LEAST_VUONG
+            && worth.throughout > LEAST_THROUGHOUT
     }
 
     /// Smoothed disturbance of `fit`, a column a trial.
@@ -115,6 +114,7 @@ impl Search<'_> {
         let mut beam = vec![best.clone()];
         let mut sets = Vec::new();
         let mut link_searches = 0;
+        let mut is_waiting = false;
         let is_negligible = self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort;
         for round in 0..if is_negligible { 0 } else { MOST_TERMS } {
             say(&format!("the drive: {} terms and one more", round));
@@ -126,11 +126,15 @@ impl Search<'_> {
             }
             let unexplained = |fit: &Fit| self.unexplained(fit);
             let least = grown.iter().filter(|fit| !is_at_end(fit)).map(unexplained).fold(unexplained(&best), f64::min);
-            let is_rigid = !best.model.terms.iter().any(Term::is_link);
-            if is_rigid && link_searches < LINK_SEARCHES && least > LINK_PART * unexplained(&self.nominal) {
+            let has_link = |fit: &Fit| fit.model.terms.iter().any(Term::is_link);
+            let rigid = beam.iter().find(|fit| !has_link(fit)).filter(|_| !has_link(&best));
+            if let Some(rigid) = rigid
+                && link_searches < LINK_SEARCHES
+                && least > LINK_PART * unexplained(&self.nominal)
+            {
                 say("the drive: two bodies");
                 link_searches += 1;
-                let found = links::found(&self.data, &best, &self.disturbance(&best), &self.sides);
+                let found = links::found(&self.data, rigid, &self.disturbance(rigid), &self.sides);
                 grown.extend(found.iter().map(|fit| self.polished(fit)));
             }
             grown.retain(|fit| !is_at_end(fit));
@@ -138,16 +142,28 @@ impl Search<'_> {
             sets.extend(grown.iter().cloned());
             let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE * fit.values.len() as f64;
             let worthy = grown.iter().filter(|fit| self.is_worth(fit, &best));
-            let Some(top) = worthy.max_by(|a, b| price(a).total_cmp(&price(b))) else { break };
-            best = top.clone();
+            match worthy.max_by(|a, b| price(a).total_cmp(&price(b))) {
+                Some(top) => (best, is_waiting) = (top.clone(), false),
+                // Two terms can be worth it where neither is alone: a link hides friction, and friction a link.
+                None if !is_waiting && grown.iter().any(|fit| self.is_likelier(fit, &best)) => is_waiting = true,
+                None => break,
+            }
+            // Beside a link, whose own gain friction hides, a term has to be tried before either is given up.
+            let hidden = grown.iter().find(|fit| has_link(fit)).filter(|_| is_waiting).cloned();
             beam = grown.into_iter().take(BEAM).collect();
+            beam.extend(hidden.filter(|link| !beam.iter().any(|fit| fit.model == link.model)));
+            // What was chosen stays in it, however likely sets are that were not worth it.
+            if !is_waiting && beam.iter().all(|fit| fit.model != best.model) {
+                beam.truncate(BEAM - 1);
+                beam.push(best.clone());
+            }
             if unexplained(&best) < NEGLIGIBLE_PART * unexplained(&self.nominal) {
                 break;
             }
         }
         say("the drive: without each term");
-        let fit = self.with_believed_inertia(self.pruned(best), &sets);
-        Chosen { fit, sets: distinct_all(sets) }
+        let fit = self.believed(self.pruned(best), &sets);
+        Chosen { fit, sets: distinct(sets) }
     }
 
     /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
@@ -161,9 +177,10 @@ impl Search<'_> {
         tried(&self.data, base, candidates)
     }
 
-    /// `best`, or the likeliest of `sets` that is worth its terms where the inertia of `best` is not believed; else no term.
-    fn with_believed_inertia(&self, best: Fit, sets: &[Fit]) -> Fit {
-        let is_believed = |fit: &Fit| fit.model.has_believed_inertia(&fit.values);
+    /// `best`, or the likeliest of `sets` that is worth its terms where the inertia of `best` is not believed or a value ended where its
+    /// search did; else no term.
+    fn believed(&self, best: Fit, sets: &[Fit]) -> Fit {
+        let is_believed = |fit: &Fit| fit.model.has_believed_inertia(&fit.values) && !is_at_end(fit);
         if best.model == self.nominal.model || is_believed(&best) {
             return best;
         }
@@ -204,14 +221,8 @@ fn is_at_end(fit: &Fit) -> bool {
     fit.model.is_at_end(&fit.values)
 }
 
-/// The likeliest few, each set of names once.
-fn distinct(fits: Vec<Fit>) -> Vec<Fit> {
-    let mut kept = distinct_all(fits);
-    kept.truncate(JUDGED);
-    kept
-}
-
-fn distinct_all(mut fits: Vec<Fit>) -> Vec<Fit> {
+/// The sets, the likeliest first, each set of names once.
+fn distinct(mut fits: Vec<Fit>) -> Vec<Fit> {
     fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     let mut kept: Vec<Fit> = Vec::new();
     for fit in fits {

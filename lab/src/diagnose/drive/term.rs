@@ -257,8 +257,8 @@ impl Term {
 
     /// Whether a value of it sets its shape, beside its size.
     #[must_use]
-    pub const fn has_free_shape(&self) -> bool {
-        matches!(self, Self::Cogging | Self::Sublinear)
+    pub const fn has_free_shape(&self, scales: &Scales) -> bool {
+        matches!(self, Self::Cogging | Self::Sublinear) || (matches!(self, Self::AngleLoad) && !scales.is_rotary)
     }
 
     /// Puts it into `law` with `values`.

@@ -126,7 +126,7 @@ pub fn two_bodies(trial: &DriveTrial, law: &DriveLaw, link: Link, noise: &Noise,
         innovation: vec![0.0; rows],
         variance: vec![encoder; rows],
         velocity: vec![0.0; rows],
-        disturbance: Vec::new(),
+        ..Innovations::default()
     };
     let mut pairs: Vec<Pair> = Vec::new();
     let mut history: Vec<PairRow> = Vec::with_capacity(if smooth { rows } else { 0 });
@@ -165,7 +165,7 @@ pub fn two_bodies(trial: &DriveTrial, law: &DriveLaw, link: Link, noise: &Noise,
         }
     }
     if smooth {
-        out.disturbance = smoothed_pair(trial, &link, noise, &out, &history, &pairs);
+        (out.disturbance, out.residual) = smoothed_pair(trial, &link, noise, &out, &history, &pairs);
     }
     out
 }
@@ -193,7 +193,7 @@ fn unknown_pair(trial: &DriveTrial, link: &Link, encoder: f64, effort: f64) -> M
     covariance
 }
 
-/// Disturbance smoother, as that of one body with the pair of each row.
+/// Disturbance smoother, as that of one body with the pair of each row; and what it leaves of each encoder row.
 fn smoothed_pair(
     trial: &DriveTrial,
     link: &Link,
@@ -201,9 +201,9 @@ fn smoothed_pair(
     pass: &Innovations,
     history: &[PairRow],
     pairs: &[Pair],
-) -> Vec<f64> {
+) -> (Vec<f64>, Vec<f64>) {
     let measured = if link.encoder == Side::Load { 2 } else { 0 };
-    let mut force = vec![0.0; trial.len()];
+    let (mut force, mut residual) = (vec![0.0; trial.len()], vec![0.0; trial.len()]);
     let mut next = [0.0; STATES];
     for row in (0..trial.len()).rev() {
         if trial.restart[row] {
@@ -214,11 +214,13 @@ fn smoothed_pair(
         let pair = &pairs[*pair];
         let along: f64 = gain.iter().zip(&next).map(|(gain, next)| gain * next).sum();
         let mut adjoint = next;
-        adjoint[measured] += pass.innovation[row] / pass.variance[row] - along;
+        let weighted = pass.innovation[row] / pass.variance[row] - along;
+        residual[row] = noise.encoder() * weighted;
+        adjoint[measured] += weighted;
         let regime = usize::from(*coupled);
         let seen: f64 = pair.response[regime].iter().zip(&adjoint).map(|(response, adjoint)| response * adjoint).sum();
         force[row] = noise.disturbance() / pair.step * seen;
         next = transposed_product(&pair.transition[regime], &adjoint);
     }
-    force
+    (force, residual)
 }
