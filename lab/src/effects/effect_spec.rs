@@ -88,6 +88,8 @@ pub enum Limit {
     RepeatedCycles,
     /// A length of at least a step of the encoder, or it is the encoder's rounding.
     ResolvableLength,
+    /// A way in the contact that is no longer than the deepest one, or the recording shows its beginning alone.
+    VisitedDepth,
 }
 
 impl Parameter {

@@ -219,7 +219,7 @@ impl ContactModel {
 
     fn term_range(&self, parameter: &Parameter, value: f64) -> Range {
         let scales = &self.scales;
-        let (mut low, high) = (parameter.low, parameter.high);
+        let (mut low, mut high) = (parameter.low, parameter.high);
         match parameter.limit {
             Limit::ResolvableTime => low = low.max(2.0 * scales.step_s),
             Limit::ReachedRange => {
@@ -227,6 +227,7 @@ impl ContactModel {
             }
             Limit::RepeatedCycles => low = low.max(1.8 / scales.duration_s),
             Limit::ResolvableLength => low = low.max(scales.resolution),
+            Limit::VisitedDepth => high = high.min(scales.depth),
             Limit::BoundsOnly => {}
         }
         let by_factors = parameter.low >= 0.0 && parameter.high.is_infinite() && value > 0.0;

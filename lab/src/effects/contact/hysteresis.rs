@@ -1,7 +1,7 @@
 //! A loop that does not ask how fast.
 
 use crate::effects::{
-    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start, geometric,
 };
 use crate::rig::Word;
 
@@ -16,7 +16,8 @@ const YIELD_DEPTH: Parameter = Parameter::new(
     "travel over which the force turns after a reversal",
     0.0,
     f64::INFINITY,
-);
+)
+.within(Limit::VisitedDepth);
 
 static SPEC: EffectSpec = EffectSpec {
     name: "hysteresis",
@@ -70,7 +71,7 @@ impl Effect for Hysteresis {
             return Vec::new();
         }
         let size = 0.05 * scene.stiffness * scene.depth;
-        let travels = geometric(0.01 * scene.depth, 1.0 * scene.depth, 7);
+        let travels = geometric(0.01 * scene.depth, 0.9 * scene.depth, 7);
         let third = [None, Some(1.0), Some(3.0), None][form];
         let start = |travel: &f64| {
             let values: Vec<f64> = [size, *travel].into_iter().chain(third).collect();
