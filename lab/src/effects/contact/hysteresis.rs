@@ -1,7 +1,8 @@
 //! A loop that does not ask how fast.
 
 use crate::effects::{
-    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start, geometric,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
+    geometric,
 };
 use crate::rig::Word;
 
