@@ -17,7 +17,7 @@ pub trait UpdateLaw {
     /// Forgets what the estimate rests on (covariance, noise, window) but keeps the estimate itself.
     fn reset_memory(&self, state: &mut Self::State);
 
-    /// How many of the latest observations it looks at; 1 for a recursive law.
+    /// How many of the latest observations it uses; 1 for a recursive law.
     fn window(&self) -> usize;
 
     /// One update. The newest of `recent` is new; the older ones were given before, in this order. A law on a window

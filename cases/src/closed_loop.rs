@@ -88,7 +88,7 @@ pub fn simulate_trial(setup: &LoopSetup, model: RigModel, reference: &[f64]) -> 
     simulate_commanded(setup, model, reference.len(), first, f64::INFINITY, &mut |row, _, _| reference[row])
 }
 
-/// Runs one trial of `rows` periods from rest at `first`, m: `command` is told the row, the encoder's reading, m, and the force at
+/// Runs one trial of `rows` periods from rest at `first`, m: `command` receives the row, the encoder's reading, m, and the force at
 /// the sensor, N, and gives the position to go to, m. The controller's effort ends at `effort_limit`, N.
 #[must_use]
 pub fn simulate_commanded(

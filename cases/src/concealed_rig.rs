@@ -96,7 +96,7 @@ impl ConcealedRig {
         self.excursion(&simulate_trial(setup, model, &bench))
     }
 
-    /// Runs a trial of `rows` periods from rest at `first`: `command` is told the row, the encoder's reading and the true force and
+    /// Runs a trial of `rows` periods from rest at `first`: `command` receives the row, the encoder's reading and the true force and
     /// gives the position to go to; the effort ends at `effort_limit`. All at the scale of the case. Returns what is recorded along
     /// `reference`, and what really happened.
     pub fn record(

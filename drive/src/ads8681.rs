@@ -80,7 +80,7 @@ pub const fn word(code: u16, range: Range) -> u32 {
 /// [`Faults::FORCE_PARITY`] where parity, address or range are not what they should be, [`Faults::FORCE_ALARM`] where the
 /// converter complains of its supply, [`Faults::FORCE_SATURATED`] where of its input, or the code is at an end.
 pub fn code(word: u32, range: Range) -> Result<i32, Faults> {
-    let parity = |bits: u32, told: u32| (bits.count_ones() ^ (word >> told)) & 1 == 0;
+    let parity = |bits: u32, parity_bit: u32| (bits.count_ones() ^ (word >> parity_bit)) & 1 == 0;
     let fixed = word & 0xff03 == (range as u32) << 8;
     if !fixed || !parity(word >> 16, 3) || !parity(word >> 4, 2) {
         return Err(Faults::FORCE_PARITY);
@@ -102,7 +102,7 @@ pub struct Ads8681<SPI, D> {
     delay: D,
 }
 
-/// The converter did not take its settings: what it was told and what it then read.
+/// The converter did not take its settings: what it was sent and what it then read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SetUpFault<E> {
     /// The bus failed.

@@ -8,7 +8,7 @@ use stm32f4xx_hal::rcc::Config;
 pub const CLOCK_HZ: u32 = 168_000_000;
 
 /// Brings the core to [`CLOCK_HZ`] from the internal oscillator. Under QEMU there is nothing to do, and the wait for the
-/// PLL would never end; QEMU is told by a debug unit that reads zero.
+/// PLL would never end; QEMU is recognised by a debug unit that reads zero.
 pub fn start_clock(peripherals: pac::Peripherals) -> &'static str {
     if peripherals.DBGMCU.idcode().read().bits() == 0 {
         return "QEMU";

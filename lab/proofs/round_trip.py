@@ -177,19 +177,19 @@ def round_trip(palpate, folder, name, concealed, model):
         trials.append(f"trial-{trial}.csv")
         simulated.append(f"plain-{trial}.csv")
     command = [palpate, "diagnose", "--rig", "rig.toml", *trials, "--simulation", *simulated, "--model", "improved.toml", "--json", "-"]
-    told = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    if told.returncode:
-        return name, "diagnose failed: " + told.stderr.strip(), "none", "none", "none", "not exported"
-    named = ", ".join(physics["name"] for physics in json.loads(told.stdout)["physics"]) or "nothing"
+    diagnosis = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    if diagnosis.returncode:
+        return name, "diagnose failed: " + diagnosis.stderr.strip(), "none", "none", "none", "not exported"
+    named = ", ".join(physics["name"] for physics in json.loads(diagnosis.stdout)["physics"]) or "nothing"
     unused = reference(3)
     truth = concealed().play(unused, 3)[:, 2]
     error = lambda machine: float(np.sqrt(np.mean((machine.play(unused, 4)[:, 2] - truth) ** 2)))
     before, sensors = f"{error(Machine(model)):.3f}", f"{error(concealed()):.3f}"
-    said, rest = export(palpate, folder, "mjcf"), export(palpate, folder, "python")
-    if said.returncode or rest.returncode:
-        return name, named, before, "none", sensors, "not exported: " + (said.stderr or rest.stderr).strip().removeprefix("palpate: ")
-    stepper = stepper_of(rest.stdout)
-    after = f"{error(Machine(said.stdout, stepper=stepper)):.3f}"
+    mjcf, module = export(palpate, folder, "mjcf"), export(palpate, folder, "python")
+    if mjcf.returncode or module.returncode:
+        return name, named, before, "none", sensors, "not exported: " + (mjcf.stderr or module.stderr).strip().removeprefix("palpate: ")
+    stepper = stepper_of(module.stdout)
+    after = f"{error(Machine(mjcf.stdout, stepper=stepper)):.3f}"
     return name, named, before, after, sensors, "MJCF and stepper" if stepper else "MJCF"
 
 
@@ -241,25 +241,26 @@ def real_round_trip(palpate, work, case):
     model = plain(kind, mass=inertia).replace('damping="4.0"', f'damping="{damping}"')
     (work / "plain.xml").write_text(model)
     command = [palpate, "diagnose", "--rig", folder / "rig.toml", *(folder / trial for trial in trials)]
-    told = subprocess.run([*command, "--model", "improved.toml", "--json", "-"], cwd=work, capture_output=True, text=True)
-    if told.returncode:
-        return name, "diagnose failed: " + told.stderr.strip(), "none", "none", "not exported"
-    answer = json.loads(told.stdout)
+    diagnosis = subprocess.run([*command, "--model", "improved.toml", "--json", "-"], cwd=work, capture_output=True, text=True)
+    if diagnosis.returncode:
+        return name, "diagnose failed: " + diagnosis.stderr.strip(), "none", "none", "not exported"
+    answer = json.loads(diagnosis.stdout)
     named = ", ".join(f"{physics['name']} ({values(physics)})" for physics in answer["physics"])
-    said, rest = export(palpate, work, "mjcf"), export(palpate, work, "python")
-    if said.returncode or rest.returncode:
-        return name, named, "none", "none", "not exported: " + (said.stderr or rest.stderr).strip().removeprefix("palpate: ")
+    mjcf, module = export(palpate, work, "mjcf"), export(palpate, work, "python")
+    if mjcf.returncode or module.returncode:
+        return name, named, "none", "none", "not exported: " + (mjcf.stderr or module.stderr).strip().removeprefix("palpate: ")
     columns = ("t_s", f"position_{position}", f"effort_{effort}", f"load_{effort}")
     table = np.genfromtxt(folder / unused, delimiter=",", names=True)
     table = {column: table[column] for column in table.dtype.names}
-    stepper = stepper_of(rest.stdout)
+    stepper = stepper_of(module.stdout)
     before = holding_force(model, None, table, inertia, columns)
-    after = holding_force(said.stdout, stepper, table, inertia, columns)
+    after = holding_force(mjcf.stdout, stepper, table, inertia, columns)
     return name, named, f"{before:.2f}", f"{after:.2f}", "MJCF and stepper" if stepper else "MJCF"
 
 
 def values(physics):
-    return ", ".join(f"{p['name']} {p['value']:.4g} {p['unit']}" for p in physics["parameters"])
+    # A dimensionless value has the unit "1".
+    return ", ".join(f"{p['name']} {p['value']:.4g} {p['unit']}".removesuffix(" 1") for p in physics["parameters"])
 
 
 def main():

@@ -85,7 +85,7 @@ pub fn run_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>
     let parsed = match Cli::try_parse_from(arguments) {
         Ok(parsed) => parsed,
         Err(error) => {
-            // Help on standard output, faults on standard error; a closed one cannot be told anything.
+            // Help on standard output, faults on standard error; to a closed one nothing can be written.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }

@@ -16,7 +16,7 @@ use crate::rig::{Rig, Sensors};
 use crate::simulate::{self, SimulateArgs};
 use crate::tools::{Leave, MissingTools};
 
-/// Runs the demonstration; what had to be left out is told at the end.
+/// Runs the demonstration; what had to be left out is listed at the end.
 ///
 /// The diagnosis comes first, for it needs the host alone; the device's image is built after it.
 ///

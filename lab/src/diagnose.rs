@@ -2,7 +2,7 @@
 //!
 //! The recordings are checked ([`check`]). The contact is identified by a model of its force along the recorded motion ([`contact`]), the
 //! drive by a model of its motion under the recorded effort ([`drive`]); each tells which effects are missing, what else would do, and
-//! what is left. [`report`] writes it down; [`experiment`] says what would tell alternatives apart.
+//! what is left. [`report`] writes it down; [`experiment`] says which experiment would separate alternatives.
 
 pub mod check;
 pub mod command;
@@ -50,7 +50,7 @@ pub struct Found {
     pub alternatives: Vec<Rig>,
 }
 
-/// Diagnoses `trials` against `rig`; `origin` names the rig file in errors, `say` is told how it goes.
+/// Diagnoses `trials` against `rig`; `origin` names the rig file in errors, `say` receives messages of progress.
 ///
 /// The same input and seed give the same answer to the bit.
 ///

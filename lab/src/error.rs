@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-/// A file at fault, told the way a person can act on it.
+/// A file at fault, reported so that a person can act on it.
 ///
 /// `place` names the file and the line, column or key; `found` what stands there; `expected` what should.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

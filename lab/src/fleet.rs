@@ -2,7 +2,7 @@
 //!
 //! A [`source`] lists the rigs. Each is diagnosed by the command that a user runs, in a process and a [`rig_folder`] of its own, so
 //! that neither a file at fault nor a crash touches another rig, and what is done stays done ([`worker`]). The [`table`] has a row for
-//! each value; [`changes`] compares two tables, [`outliers`] tells what stands out of one, the [`page`] shows both.
+//! each value; [`changes`] compares two tables, [`outliers`] lists what stands out of one, the [`page`] shows both.
 
 pub mod changes;
 mod column;

@@ -1,11 +1,11 @@
 //! `palpate investigate`: diagnose, design a trial, run it, record it, and diagnose again, until one explanation is left.
 //!
 //! A [`test_bed`] runs a reference on the rig: a simulation with concealed physics ([`simulated_bed`]) or any command of the user
-//! ([`command_bed`]), a drive on its serial line
-//! ([`drive_bed`]), or the drive image in QEMU with a simulation in its loop ([`emulated_drive_bed`]). [`session`] is the loop; what is open after a diagnosis is put into questions ([`questions`]) for
+//! ([`command_bed`]), a drive on its serial line ([`drive_bed`]), or the drive image in QEMU with a simulation in its loop
+//! ([`emulated_drive_bed`]). [`session`] is the loop; what is open after a diagnosis is put into questions ([`questions`]) for
 //! [`experiment_design`](crate::experiment_design). [`monitor`] holds every recording against the limits and knows nothing of the
-//! controller or of the design. [`record`] is what the folder of an investigation holds, from which it is resumed, and
-//! [`report`] the page. [`trial_of_method`] puts the whole to rigs whose missing physics is concealed from it.
+//! controller or of the design. [`record`] is what the folder of an investigation holds, from which it is resumed, and [`report`] the
+//! page. [`trial_of_method`] puts the whole to rigs whose missing physics is concealed from it.
 
 mod command;
 pub mod command_bed;

@@ -1,4 +1,4 @@
-//! `palpate listen`: what a drive says, and what it is told.
+//! `palpate listen`: what a drive reports, and what it is sent.
 
 mod client;
 mod feed;
@@ -233,9 +233,9 @@ impl Session {
         let (mut waiting, mut alive) = (inputs.as_slice(), Instant::now());
         let mut quiet_since = Instant::now();
         while !stop.load(Ordering::Relaxed) && until.is_none_or(|until| Instant::now() < until) {
-            let mut told = false;
+            let mut has_data = false;
             let mut take = |message: Message<'_>| {
-                told |= matches!(message, Message::Sample(_) | Message::Estimate(_));
+                has_data |= matches!(message, Message::Sample(_) | Message::Estimate(_));
                 self.take(&message);
             };
             if !waiting.is_empty() {
@@ -243,7 +243,7 @@ impl Session {
             } else {
                 client.poll(&mut take)?;
             }
-            if told || !waiting.is_empty() {
+            if has_data || !waiting.is_empty() {
                 quiet_since = Instant::now();
             } else if feeding && quiet_since.elapsed() > Duration::from_millis(500) {
                 break;
@@ -259,7 +259,7 @@ impl Session {
 
     fn take(&mut self, message: &Message<'_>) {
         match message {
-            Message::Estimate(told) => self.screen.show(told, &self.calibration),
+            Message::Estimate(estimate) => self.screen.show(estimate, &self.calibration),
             Message::Sample(seen) if self.recording => self.taken.take(seen),
             _ => {}
         }

@@ -3,6 +3,7 @@
 mod answer;
 pub(crate) mod column;
 mod document;
+pub(crate) mod effect_name;
 mod embed;
 pub(crate) mod neighbour;
 pub(crate) mod quantity;
@@ -103,7 +104,7 @@ pub struct Summary {
 
 impl Page {
     /// Writes the page. It needs nothing but itself: style, scripts and data are inside, and it forbids the browser
-    /// to fetch anything. A long trial is thinned to the rows that a screen can tell apart.
+    /// to fetch anything. A long trial is thinned to the rows that a screen can resolve.
     ///
     /// # Errors
     /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] where the vectors of a trial differ in length.

@@ -72,7 +72,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// Builds the image and its counter, and runs it twice; `say` is told which step begins.
+    /// Builds the image and its counter, and runs it twice; `say` receives the step that begins.
     ///
     /// # Errors
     /// A tool is missing, the image fails, or the two counts disagree.
@@ -147,7 +147,7 @@ pub fn panics_reached_from(image: &Path, entry: &str) -> Result<Vec<String>> {
     Ok(panics.chain(calls.blind(start)).map(|function| function.name.clone()).collect())
 }
 
-/// Bytes of stack of the deepest way from the function `entry` of an image, or of all its functions where that cannot be told.
+/// Bytes of stack of the deepest way from the function `entry` of an image, or of all its functions where that cannot be determined.
 ///
 /// # Errors
 /// The image cannot be read, or has no such function.

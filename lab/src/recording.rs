@@ -50,8 +50,9 @@ impl Recording {
     /// Time, position and at least one of force and effort have to be there; columns without a role are skipped.
     ///
     /// # Errors
-    /// The file cannot be read, is of another format than its ending says or is damaged, a column is absent or of the other coordinate, a field is no finite
-    /// number, a row is ragged, time does not increase, or there are fewer than two rows; with the true line in the file.
+    /// The file cannot be read, is of another format than its ending says or is damaged, a column is absent or of the other coordinate, a
+    /// field is no finite number, a row is ragged, time does not increase, or there are fewer than two rows; with the true line in the
+    /// file.
     pub fn read(path: &Path, rig: &Rig) -> Result<Self, InputError> {
         read::recording(path, rig)
     }
@@ -59,7 +60,8 @@ impl Recording {
     /// The recording in `channels`, by the column names of `rig`; `name` is the trial's, also in errors.
     ///
     /// # Errors
-    /// A column is absent, of another length than the time, or of the other coordinate, a value is no finite number, or time does not increase.
+    /// A column is absent, of another length than the time, or of the other coordinate, a value is no finite number, or time does not
+    /// increase.
     pub fn from_channels(name: String, channels: Vec<Channel>, rig: &Rig) -> Result<Self, InputError> {
         assemble::recording(&channels, &name.clone(), name, rig)
     }

@@ -144,7 +144,7 @@ impl Runner {
         })
     }
 
-    /// Hands the outcome of each sample to `take`, in order; `progress` is told from time to time how many are done.
+    /// Hands the outcome of each sample to `take`, in order; `progress` receives from time to time how many are done.
     ///
     /// # Errors
     /// The settings are out of range, or the device fails.

@@ -256,7 +256,7 @@ fn may_sudo() -> bool {
     quiet.is_ok_and(|status| status.success())
 }
 
-/// Runs an installation, told beforehand; what it prints goes to standard error.
+/// Runs an installation, announced beforehand; what it prints goes to standard error.
 fn install(what: &str, why: &str, command: &[&str]) -> Result<(), String> {
     let Some((program, arguments)) = command.split_first() else {
         return Err("there is no command for it".to_owned());

@@ -225,8 +225,8 @@ fn what_is_simulated_is_replayed_to_the_rigs_own_figures() {
     assert!(covered as f64 > 0.9 * known.len() as f64, "{covered} of {} intervals of 95 % hold 300 N/m", known.len());
 }
 
-/// Where nothing is missing, the drive's law and that of the diagnosis give one stiffness and one damping of one recording, and the pages link
-/// to one another.
+/// Where nothing is missing, the drive's law and that of the diagnosis give one stiffness and one damping of one recording, and the pages
+/// link to one another.
 #[test]
 fn replay_and_diagnosis_of_one_recording_agree_within_their_intervals() {
     let folder = TempDir::new().expect("a folder");

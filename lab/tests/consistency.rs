@@ -102,7 +102,7 @@ fn in_console(written: &Written) -> Vec<String> {
     }
     for other in all(&written.json, "rivals") {
         let names: Vec<&str> = all(other, "physics").iter().filter_map(Value::as_str).collect();
-        let wanted = format!("  not told apart: {}. {}", names.join(" and "), text(other, "separated_by"));
+        let wanted = format!("  not ruled out: {}. {}", names.join(" and "), text(other, "separated_by"));
         if lines.next() != Some(wanted.as_str()) {
             wrong.push(format!("console: not {wanted:?}"));
         }

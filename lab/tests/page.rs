@@ -53,7 +53,7 @@ fn an_interval_that_includes_zero_is_called_no_finding() {
     trial.methods.truncate(1);
     let summary = trial.methods[0].summary.as_mut().expect("it touches");
     (summary.damping, summary.damping_half_width) = (5.0, 12.0);
-    says(trial, "5 ± 12 N s/m (this damping cannot be told from none at all)");
+    says(trial, "5 ± 12 N s/m (this damping is not distinguishable from zero)");
 }
 
 #[test]

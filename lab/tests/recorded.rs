@@ -58,7 +58,7 @@ fn a_pendulum_that_swings_up_carries_a_weight() {
     is_named("dfki_pendulum", "dfki_pendulum/ddp.csv", &["gravity_load"]);
 }
 
-/// One trial with its release: two slopes leave 1.8 mN of rows that taught nothing, a power law 2.5 mN, so either law of a spring that
+/// One trial with its release: two slopes leave 1.8 mN of held-out rows, a power law 2.5 mN, so either law of a spring that
 /// stiffens may be the answer; the several trials of the challenge are asked for the power law.
 #[test]
 fn a_soft_sample_relaxes_and_stiffens() {
@@ -154,7 +154,7 @@ fn three_specimens_are_sealed_diagnosed_opened_and_scored_on_trials_that_were_ke
     assert_eq!(recorded.named + recorded.owned + recorded.undecidable + recorded.wrong + recorded.missed, recorded.n);
     assert!(recorded.rows.iter().all(|row| page.contains(&row.recording) && said.contains(&row.words())), "{said}");
 
-    // What was learnt from one trial foretells another: a dent that stays leaves less than half of what a spring does, and so do
+    // What was fitted to one trial predicts another: a dent that stays leaves less than half of what a spring does, and so do
     // relaxation and a power law. Nothing was fitted, so neither had to.
     assert!(diamond.named.contains(&"plastic_set".to_owned()) && diamond.left().unwrap() < 0.5, "{said}");
     assert!(soft.named.contains(&"stress_relaxation".to_owned()) && soft.left().unwrap() < 0.5, "{said}");

@@ -44,12 +44,12 @@ fn says(diagnosis: &Report, sentences: &[&str]) {
 }
 
 #[test]
-fn two_effects_and_a_rival_are_told_with_figures() {
+fn two_effects_and_an_alternative_are_shown_with_figures() {
     says(
         &explained(),
         &[
             "The damping grows with depth and the drive drags; the simulation knows neither.",
-            "Hunt crossley damping",
+            "Hunt-Crossley damping",
             "acts in the contact",
             "F = K x + B v + alpha x v",
             "812 ± 14 N s/m²",
@@ -57,11 +57,11 @@ fn two_effects_and_a_rival_are_told_with_figures() {
             "1.12 N (95 %: 0.81 to 1.21 N)",
             "chance alone does as much in fewer than 1 of 1000 cases",
             "the named physics takes away 97 %",
-            "Explained by hunt crossley damping and coulomb friction",
-            "of what the law without it leaves above the noise; chance",
+            "Explained by Hunt-Crossley damping and Coulomb friction",
+            "of the mean square that the law without it leaves above the noise; chance",
             "How this was made",
             "SHA-256 abab",
-            "82 % of what the simulation misses in the force lies at onset, as the contact begins, trial-1.csv, 2.61 to 2.95 s, x 0-2 mm, v &gt; 0.1 m/s.",
+            "82 % of what the simulation misses in the force lies at onset, as the contact begins, in trial-1.csv, 2.61 to 2.95 s, x 0-2 mm, v &gt; 0.1 m/s.",
             "quadratic damping not ruled out",
             "press at one speed to 3 mm and to 9 mm",
             "Before you rely on this",
@@ -72,7 +72,7 @@ fn two_effects_and_a_rival_are_told_with_figures() {
 }
 
 #[test]
-fn values_that_are_told_only_together_are_told_in_words() {
+fn values_that_are_only_estimated_together_are_described() {
     let (mut answer, pictures) = explained();
     let names = ["stiffness_n_m", "damping_n_s_m", "hunt_crossley_damping.alpha"].map(str::to_owned);
     let matrix = |rho: f64| vec![vec![1.0, 0.3, -0.1], vec![0.3, 1.0, rho], vec![-0.1, rho, 1.0]];
@@ -82,7 +82,7 @@ fn values_that_are_told_only_together_are_told_in_words() {
     says(
         &report,
         &[
-            "damping_n_s_m and hunt_crossley_damping.alpha are told only together: their errors have a correlation of −0.97.",
+            "damping_n_s_m and hunt_crossley_damping.alpha are only estimated together: their errors have a correlation of −0.97.",
             "If one is larger than estimated, the other is smaller,",
         ],
     );
@@ -131,7 +131,7 @@ fn what_is_unknown_is_owned_and_located() {
         &[
             "Unknown physics",
             "none of the 8 effects that were tried explains it",
-            "Most of it, 74 % in the force, lies while drawing back, trial-1.csv, 3.20 to 3.70 s, x 3-9 mm",
+            "Most of it, 74 % in the force, lies while drawing back, in trial-1.csv, 3.20 to 3.70 s, x 3-9 mm",
             "no effect that was tried takes that away",
             "record more of where it lies (while drawing back, x 3-9 mm, v &lt; -0.02 m/s)",
         ],

@@ -17,8 +17,8 @@ const POLL: Duration = Duration::from_millis(50);
 /// Unwinds a worker that nobody waits for any more.
 struct Cancelled;
 
-/// Runs `work`, which is told how to say how far it is. On a signal, or an error of `progress`, that error is returned and the work ends when
-/// it next says something.
+/// Runs `work`, which receives a function to report progress with. On a signal, or an error of `progress`, that error is returned and the
+/// work ends when it next says something.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
@@ -45,11 +45,11 @@ pub fn run<T: Send + 'static>(
             let step = received.recv_timeout(POLL);
             (received, step)
         });
-        let told = match (&step, &progress) {
+        let reported = match (&step, &progress) {
             (Ok(step), Some(progress)) => progress.call1(py, (step.as_str(),)).map(|_| ()),
             _ => Ok(()),
         };
-        if let Err(error) = told.and_then(|()| py.check_signals()) {
+        if let Err(error) = reported.and_then(|()| py.check_signals()) {
             is_cancelled.store(true, Ordering::Relaxed);
             return Err(error);
         }

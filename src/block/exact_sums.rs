@@ -262,8 +262,8 @@ fn is_moderate(centre: Impedance) -> bool {
 }
 
 /// Whether `estimate` is to become the centre of `run`: it leaves much less of the residual, and rounding about the old centre would show.
-/// That is so where the move is no small part of the estimate, and where B has to be told from the much larger part that K has in the right
-/// side, or from columns that are nearly in line.
+/// That is so where the move is no small part of the estimate, and where B has to be separated from the much larger part that K has in the
+/// right side, or from columns that are nearly in line.
 fn suits_better(estimate: Impedance, run: &ExactRun) -> bool {
     let sums = run.moments();
     let move_to = estimate.moved(-1.0, run.centre);

@@ -172,8 +172,9 @@ struct IntegerSums {
 impl IntegerSums {
     /// Adds `new` and removes `old`.
     ///
-    /// Squares by `a^2 - b^2 = (a - b) (a + b)`, products by `a c - b d = (a - b) c + b (c - d)`. Each sum is stored before the next is formed: eight sums of 64 bits are more than the
-    /// registers of the core, and where the compiler kept them there it moved them to the stack and back.
+    /// Squares by `a^2 - b^2 = (a - b) (a + b)`, products by `a c - b d = (a - b) c + b (c - d)`. Each sum is stored before the next is
+    /// formed: eight sums of 64 bits are more than the registers of the core, and where the compiler kept them there it moved them to the
+    /// stack and back.
     #[inline(always)]
     fn replace(&mut self, new: FixedPoint, old: FixedPoint) {
         let FixedPoint { penetration: x, rate: v, residual: e } = new;
@@ -295,8 +296,8 @@ impl ExactRun {
 
     /// The least-squares solution, in internal units, without a prior; `None` where it cannot tell B, or is not finite.
     ///
-    /// It is solved in whole numbers of the scale, with the inverse as [`Sym2::invert`] has it. Their units are powers of two, so each step rounds as that of [`Solution`] does, which
-    /// solves in internal units.
+    /// It is solved in whole numbers of the scale, with the inverse as [`Sym2::invert`] has it. Their units are powers of two, so each
+    /// step rounds as that of [`Solution`] does, which solves in internal units.
     ///
     /// [`Solution`]: crate::block::solution::Solution
     #[inline(always)]

@@ -74,8 +74,8 @@ impl BlockLeastMeanFourth {
     }
 }
 
-/// The direction of search, scaled so that its larger entry has magnitude one; `None` where the gradient is zero. Where B is not identifiable, Newton's
-/// direction is along K alone.
+/// The direction of search, scaled so that its larger entry has magnitude one; `None` where the gradient is zero. Where B is not
+/// identifiable, Newton's direction is along K alone.
 pub(crate) fn search_direction<M: WindowSums>(
     direction: Direction,
     view: &WindowView<'_, M>,

@@ -23,7 +23,7 @@ pub enum ContactModel {
     /// `F = K x + B v + alpha x v`: damping that grows with depth from B at the surface; alpha (N s/m^2).
     GrowingDamping,
     /// `F = K x + B v + c`: a force sensor whose zero is off by c (N), or a surface that lies deeper than it was said, by
-    /// `-c / K` ([`contact_plane`]). In contact nothing tells the two apart.
+    /// `-c / K` ([`contact_plane`]). In contact the two cannot be distinguished.
     BiasedKelvinVoigt,
     /// `F = K x + B v + m a`: the mass m (kg) beyond the force sensor.
     ToolMass,

@@ -7,8 +7,8 @@ use crate::math::{cbrt, near_sqrt};
 /// ```text
 /// S = cbrt(|q|/2 + sqrt(q^2/4 + p^3)),   T = p / S,   t = -q / (S^2 + p + T^2)
 /// ```
-/// Only positive terms are added, so nothing cancels: the error is at most 2.5 units of 2^-23 over 24 decades of p and 36 of q, where the naive
-/// `t = cbrt(..) + cbrt(..)` loses every digit in one case of a hundred (`host-tests/invariants/cubic.rs`).
+/// Only positive terms are added, so nothing cancels: the error is at most 2.5 units of 2^-23 over 24 decades of p and 36 of q, where the
+/// naive `t = cbrt(..) + cbrt(..)` loses every digit in one case of a hundred (`host-tests/invariants/cubic.rs`).
 ///
 /// Degenerate cases: `q = 0` gives 0; `p = 0` gives `-cbrt(q)`, the triple root where q is zero too. `None` where an
 /// intermediate leaves the range of a single (|q| above 1e19 or p above 1e12), or an argument is NaN or `p` negative. Where

@@ -343,9 +343,9 @@ mod tests {
             ([29.9, 3.01], of_b),
             ([30.1, 3.01], of_k | of_b),
         ] {
-            let told = assessed([100.0, 10.0], half_width);
-            assert_eq!([told.half_width.stiffness, told.half_width.damping], half_width);
-            assert_eq!(told.flags, want, "{half_width:?}");
+            let estimate = assessed([100.0, 10.0], half_width);
+            assert_eq!([estimate.half_width.stiffness, estimate.half_width.damping], half_width);
+            assert_eq!(estimate.flags, want, "{half_width:?}");
             assert_eq!(assessed([-100.0, -10.0], half_width).flags, want | Flags::NEGATIVE, "{half_width:?}");
         }
     }

@@ -112,7 +112,7 @@ impl UncertaintyPropagation {
             };
             return Impedance { stiffness: dot(k, at_start), damping: dot(b, at_start) };
         }
-        // B has not been told from K yet, or nothing has been told.
+        // B has not been separated from K yet, or nothing has been observed.
         let alone = b.stiffness == 0.0 && k.damping == 0.0 && k_done != 0.0;
         let stiffness = if alone { k.stiffness * way.stiffness / k_done } else { f32::INFINITY };
         Impedance { stiffness, damping: f32::INFINITY }
@@ -301,7 +301,7 @@ mod tests {
     fn where_the_parameters_are_not_told_apart_the_bias_is_not_known() {
         let of = |transition| UncertaintyPropagation { transition, ..midway() }.startup_bias(pair(1.0, 2.5));
         let unknown = pair(f32::INFINITY, f32::INFINITY);
-        assert_eq!(of([pair(1.0, 0.0), pair(0.0, 1.0)]), unknown, "nothing has been told");
+        assert_eq!(of([pair(1.0, 0.0), pair(0.0, 1.0)]), unknown, "nothing has been observed");
         // Of K alone: 0.5 / (1 - 0.5) of (3 - 1), and 0.75 / (1 - 0.75).
         assert_eq!(of([pair(0.5, 0.0), pair(0.0, 1.0)]), pair(2.0, f32::INFINITY));
         assert_eq!(of([pair(0.75, 0.0), pair(0.0, 1.0)]), pair(6.0, f32::INFINITY));

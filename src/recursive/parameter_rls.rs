@@ -146,8 +146,9 @@ impl<const P: usize> ParameterRls<P> {
     }
 
     /// Half-widths of the 95 % intervals, internal units: `1.96 sqrt(c s^2 P_jj w2 / w)` with c the correlated samples, s^2 the mean of
-    /// innovation times residual, never below the square of the noise over c, and w, w2 the sums of the weights and of their squares:
-    /// P takes a weight for a variance, and samples that fade out weigh less than they scatter. It covers noise, not a model that does not fit.
+    /// innovation times residual, never below the square of the noise over c, and w, w2 the sums of the weights and of their squares: P
+    /// takes a weight for a variance, and samples that fade out weigh less than they scatter. It covers noise, not a model that does not
+    /// fit.
     pub fn half_widths(&self, state: &ParameterState<P>) -> [f32; P] {
         let c = self.config.correlated_samples;
         let known = self.config.noise * self.config.noise / c;

@@ -25,12 +25,12 @@ pub struct RecursiveState {
 impl RecursiveState {
     /// The estimate without the bias that is left from its initial value of zero; `None` until both parameters can be estimated.
     ///
-    /// A small P(0) biases a recursion towards its initial value for seconds. That bias follows from the gains:
-    /// `M (I - M)^-1 (start - estimate)` ([`UncertaintyPropagation`]). Without it the estimate is the weighted least-squares solution of the samples
-    /// alone. The state is not changed.
+    /// A small P(0) biases a recursion towards its initial value for seconds. That bias follows from the gains: `M (I - M)^-1 (start -
+    /// estimate)` ([`UncertaintyPropagation`]). Without it the estimate is the weighted least-squares solution of the samples alone. The
+    /// state is not changed.
     pub fn without_start(&self) -> Option<Impedance> {
-        let told = self.estimate.moved(-1.0, self.uncertainty.confidence(self.estimate).startup_bias);
-        told.is_finite().then_some(told)
+        let corrected = self.estimate.moved(-1.0, self.uncertainty.confidence(self.estimate).startup_bias);
+        corrected.is_finite().then_some(corrected)
     }
 
     /// With the estimate at `estimate` and all else at its start.

@@ -34,9 +34,9 @@ pub struct BaselineSummary {
     pub who: String,
     /// Cases with nothing missing, and those of them in which it names something.
     pub alarms: (usize, usize),
-    /// Single effects at least as large as the floor, and those of them named, and nothing else.
+    /// Single effects at least as large as the expected noise, and those of them named, and nothing else.
     pub right: (usize, usize),
-    /// RMS left of single effects at least as large as the floor, over that of the refitted nominal law, median.
+    /// RMS left of single effects at least as large as the expected noise, over that of the refitted nominal law, median.
     pub left: f64,
     /// Median.
     pub seconds: f64,
@@ -67,7 +67,7 @@ impl BaselineScore {
     }
 }
 
-/// The standing of the diagnosis itself, and of all others that looked at `rows`.
+/// The standing of the diagnosis itself, and of all others that analysed `rows`.
 #[must_use]
 pub fn summaries(rows: &[CaseScore]) -> Vec<BaselineSummary> {
     let who: BTreeSet<&str> = rows.iter().flat_map(|row| &row.baselines).map(|other| other.who.as_str()).collect();

@@ -45,7 +45,7 @@ impl CaseResult {
         self.diagnosis.as_ref().ok_or_else(|| self.failure.as_deref().unwrap_or("no answer"))
     }
 
-    /// For people who watch a run, who are not told the true answers either.
+    /// For people who watch a run, who do not see the true answers either.
     #[must_use]
     pub fn line(&self) -> String {
         match self.diagnosis() {

@@ -74,7 +74,7 @@ impl ParameterScore {
 }
 
 impl CaseScore {
-    /// Holds what was `told` of a case, or why nothing was, against its `truth`.
+    /// Compares the diagnosis of a case, or why there is none, with its `truth`.
     #[must_use]
     pub fn score(truth: &DrawnAnswer, diagnosis: Result<&DiagnosisJson, &str>, seconds: f64) -> Self {
         let mut row = Self {
@@ -117,7 +117,7 @@ impl CaseScore {
         same(Self::score(answer, Err(""), 0.0))
     }
 
-    /// One effect of the list, at least as large as the floor.
+    /// One effect of the list, at least as large as the expected noise.
     #[must_use]
     pub fn is_large(&self) -> bool {
         self.kind == CaseKind::Single && self.strength >= 1.0
@@ -133,7 +133,7 @@ impl CaseScore {
     #[must_use]
     pub fn line(&self) -> String {
         format!(
-            "{:6} {}/{}/{} {} -> {}; not told apart: {}; strength {:.2}, {} sensors, {} motion, left {}, {:.1} s{}",
+            "{:6} {}/{}/{} {} -> {}; not ruled out: {}; strength {:.2}, {} sensors, {} motion, left {}, {:.1} s{}",
             self.mark(),
             self.seed,
             self.index,

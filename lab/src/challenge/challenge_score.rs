@@ -36,7 +36,7 @@ pub struct ChallengeScore {
     pub outside: OutsideCounts,
     /// Of single effects that were named rightly.
     pub parameters: ParameterStatistics,
-    /// Held-out residual over the floor where listed effects were named rightly, medians.
+    /// Held-out residual over the expected noise where listed effects were named rightly, medians.
     pub residual_over_floor: ResidualStatistics,
     /// Of one diagnosis.
     pub seconds_median: f64,
@@ -67,7 +67,7 @@ pub struct ParameterStatistics {
     pub coverage: f64,
 }
 
-/// Held-out residual over the floor.
+/// Held-out residual over the expected noise.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ResidualStatistics {
     /// Nominal physics, values refitted.

@@ -31,9 +31,9 @@ pub struct ChallengeArgs {
     /// Write the page
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    /// Where cases come from: simulators (own, mujoco, drake, exudyn; all where left out; all but own take 560 MB of Python packages, which are
-    /// installed into a folder of their own: asked for on a terminal, told of elsewhere, not with PALPATE_NO_INSTALL=1), and folders of another author
-    /// (NNN/rig.toml, NNN/trial-*.csv, truth.json with `truth` and `also` of each case)
+    /// Where cases come from: simulators (own, mujoco, drake, exudyn; all where left out; all but own take 560 MB of Python packages,
+    /// which are installed into a folder of their own: asked for on a terminal, announced elsewhere, never with PALPATE_NO_INSTALL=1), and
+    /// folders of another author (NNN/rig.toml, NNN/trial-*.csv, truth.json with `truth` and `also` of each case)
     #[arg(long, value_name = "NAME|DIR", value_delimiter = ',')]
     pub source: Vec<CaseSource>,
     /// Real recordings beside the cases: `all`, `none`, or those whose names begin so, as `tissue_indentation/soft`
@@ -86,14 +86,14 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
         None => protocol::run(args)?,
     };
     let summary = summary::table(&challenge);
-    let mut told = summary.clone() + "\n";
+    let mut text = summary.clone() + "\n";
     if let Some(recorded) = &challenge.recorded {
-        told += &(table(recorded) + "\n");
+        text += &(table(recorded) + "\n");
     }
     if args.json.as_deref().is_some_and(|path| path.as_os_str() == "-") {
-        eprint!("{told}");
+        eprint!("{text}");
     } else {
-        std::io::stdout().write_all(told.as_bytes()).context("standard output")?;
+        std::io::stdout().write_all(text.as_bytes()).context("standard output")?;
     }
     let text = serde_json::to_string_pretty(&challenge).context("the score cannot be written as JSON")? + "\n";
     if let Some(mut file) = report {

@@ -91,7 +91,7 @@ fn table(challenge: &ChallengeScore) -> Markup {
 fn row_of(line: &Target) -> Markup {
     let [low, high] = clopper_pearson(line.hits, line.of);
     let share = line.hits as f64 / line.of as f64;
-    let told = line.least.map(|least| match () {
+    let met = line.least.map(|least| match () {
         () if share >= least => ("met", "met"),
         () if high >= least => ("open", "within the interval"),
         () => ("missed", "missed"),
@@ -100,7 +100,7 @@ fn row_of(line: &Target) -> Markup {
         tr {
             th { (line.what) } td { (line.hits) } td { (line.of) } td { (percent(share)) }
             td { (percent(low)) " to " (percent(high)) } td { (line.target) }
-            td { @if let Some((class, word)) = told { span class=(class) { (word) } } }
+            td { @if let Some((class, word)) = met { span class=(class) { (word) } } }
         }
     }
 }

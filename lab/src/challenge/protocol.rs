@@ -44,7 +44,7 @@ pub fn run(args: &ChallengeArgs) -> Result<ChallengeScore> {
             home.commit(&answers, &left_out)?
         }
     };
-    // Read for the names and the files of the cases: the answers are not looked at before all is diagnosed.
+    // Read for the names and the files of the cases: the answers are not read before all is diagnosed.
     let cases = commitment.open()?.cases().to_vec();
     let real = cases.iter().filter(|case| case.origin == Origin::Recorded).count();
     let sha256 = commitment.sha256();

@@ -17,9 +17,9 @@ pub struct SingleEffectCounts {
     pub detected: usize,
     /// The effect and nothing else.
     pub named_rightly: usize,
-    /// The effect among the answer and its rivals.
+    /// The effect among the answer and its alternatives.
     pub within_rivals: usize,
-    /// Names in answer and rivals where something was detected, mean.
+    /// Names in answer and alternatives where something was detected, mean.
     pub mean_set_size: f64,
     /// By strength.
     pub by_strength: Vec<StrengthBand>,

@@ -45,7 +45,7 @@ pub struct DiagnoseArgs {
     /// Write the improved rig file, which `palpate simulate` runs
     #[arg(long, value_name = "FILE.toml")]
     pub model: Option<PathBuf>,
-    /// Write the reference trajectory that would tell the alternatives apart, where there are any
+    /// Write the reference trajectory that would separate the alternatives, where there are any
     #[arg(long, value_name = "FILE.csv")]
     pub experiment: Option<PathBuf>,
     /// Seed of the noise that is drawn to estimate what the sensors alone would show in the drive: the same seed, the same answer
@@ -68,7 +68,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     let read = |paths: &[PathBuf]| paths.iter().map(|path| Recording::read(path, &rig)).collect::<Result<Vec<_>, _>>();
     let (trials, simulation) = (read(&args.trials)?, read(&args.simulation)?);
     args.simulation.iter().zip(&simulation).zip(&trials).try_for_each(|((path, run), trial)| fits(path, run, trial))?;
-    // Opened before the work: a place that cannot be written is told at once.
+    // Opened before the work: a place that cannot be written is reported at once.
     let open = |path: &Option<PathBuf>| {
         path.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()
     };
@@ -209,9 +209,9 @@ fn print(answer: &Diagnosis, text: &str, json_only: bool) -> Result<()> {
     let mut out = std::io::stdout().lock();
     if json_only {
         out.write_all(text.as_bytes())?;
-        eprint!("{}", printable(&told(answer)));
+        eprint!("{}", printable(&console_text(answer)));
     } else {
-        out.write_all(printable(&told(answer)).as_bytes())?;
+        out.write_all(printable(&console_text(answer)).as_bytes())?;
     }
     for finding in &answer.findings {
         let place = if finding.place.is_empty() { String::new() } else { format!("{}: ", finding.place) };
@@ -222,7 +222,7 @@ fn print(answer: &Diagnosis, text: &str, json_only: bool) -> Result<()> {
 }
 
 /// Summary, effects with their values, and what else would do, a line each.
-fn told(answer: &Diagnosis) -> String {
+fn console_text(answer: &Diagnosis) -> String {
     let mut lines = vec![answer.summary.clone()];
     for physics in &answer.physics {
         lines.push(format!("  {}: {}", physics.name, physics.statement));
@@ -237,7 +237,7 @@ fn told(answer: &Diagnosis) -> String {
     }
     let alternatives = answer.alternatives.iter();
     lines.extend(
-        alternatives.map(|other| format!("  not told apart: {}. {}", other.physics.join(" and "), other.separated_by)),
+        alternatives.map(|other| format!("  not ruled out: {}. {}", other.physics.join(" and "), other.separated_by)),
     );
     lines.join("\n") + "\n"
 }

@@ -43,7 +43,8 @@ impl Spread {
     }
 }
 
-/// Deviation and covariance of each value, of the linearised least squares of `residual` with the derivatives `columns` by one step of each value.
+/// Deviation and covariance of each value, of the linearised least squares of `residual` with the derivatives `columns` by one step of
+/// each value.
 ///
 /// The covariance is H^-1 times `power`, the mean square of the residual, with H the curvature, or, where that is larger, the sandwich
 /// H^-1 B H^-1 with B the scatter of the score over blocks of `block` rows: it holds where the residual of an imperfect law remembers

@@ -43,7 +43,7 @@ pub mod check_clock {
     /// Unit: 1; chosen.
     pub const PERIOD_RATIO: f64 = 1.05;
 
-    /// Rows of all trials below which little can be told, ...
+    /// Rows of all trials below which little can be concluded, ...
     ///
     /// Unit: rows; chosen.
     pub const FEW_ROWS: usize = 200;

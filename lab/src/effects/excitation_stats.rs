@@ -46,8 +46,8 @@ pub struct ExcitationStats {
 }
 
 impl ExcitationStats {
-    /// The slowest swing of a link that can be told, rad/s, the whole moved mass on it: the corner of the filter through which the
-    /// drive is looked at. Motor against tool swings at twice that at the least; a link that is softer smooths the balance of its
+    /// The slowest swing of a link that can be identified, rad/s, the whole moved mass on it: the corner of the filter through which the
+    /// drive is analysed. Motor against tool swings at twice that at the least; a link that is softer smooths the balance of its
     /// noise, and seems to explain it.
     #[must_use]
     pub fn min_link_rate(&self) -> f64 {
@@ -66,7 +66,7 @@ impl ExcitationStats {
         self.free_span * self.duration > 10.0 * self.step
     }
 
-    /// Whether early and late can be told from shallow and deep: only where the same depth was visited again.
+    /// Whether the effect of time can be separated from that of depth: only where the same depth was visited again.
     #[must_use]
     pub fn separates_time_from_depth(&self) -> bool {
         self.visits >= 3

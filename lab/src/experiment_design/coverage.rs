@@ -8,13 +8,13 @@ use crate::recording::Recording;
 /// Bins of the position between the limits.
 const POSITION_BINS: f64 = 12.0;
 
-/// Shares of the greatest speed between which speeds are told from each other.
+/// Shares of the greatest speed between which speeds are distinguished.
 const SPEED_EDGES: [f64; 3] = [0.01, 0.08, 0.3];
 
-/// Lengths of a rest, s, between which rests are told from each other: what relaxes shows in time.
+/// Lengths of a rest, s, between which rests are distinguished: what relaxes shows in time.
 const REST_EDGES_S: [f64; 3] = [0.3, 1.0, 2.5];
 
-/// Frequencies, Hz, between which turns of the motion are told from each other.
+/// Frequencies, Hz, between which reversals of the motion are distinguished.
 const FREQUENCY_EDGES_HZ: [f64; 4] = [0.5, 2.0, 6.0, 14.0];
 
 /// Span over which a velocity is taken, s.

@@ -13,7 +13,7 @@ use crate::rig::Rig;
 /// The name of what no listed effect explains.
 pub const UNKNOWN: &str = "unknown";
 
-/// Alternatives that a design looks at.
+/// Alternatives that a design considers.
 const MAX_ALTERNATIVES: usize = 4;
 
 /// Places from which an alternative's values are searched in full.

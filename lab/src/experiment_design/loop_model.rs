@@ -11,7 +11,7 @@ const DEFAULT_BANDWIDTH_RAD_S: f64 = 40.0;
 /// Its damping ratio.
 const DEFAULT_DAMPING_RATIO: f64 = 0.5;
 
-/// Rows that a regression looks at, at most.
+/// Most rows of a regression.
 const MAX_ROWS: usize = 20_000;
 
 /// Span over which positions are smoothed before they are differentiated, s.

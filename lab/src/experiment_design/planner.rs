@@ -16,7 +16,7 @@ use super::reference::reference_along;
 use crate::recording::Recording;
 use crate::rig::Rig;
 
-/// Energy at which two explanations count as told apart: chance alone leaves less but once in two thousand times.
+/// Energy at which two explanations count as distinguished: chance alone leaves less but once in two thousand times.
 pub const DECISIVE_ENERGY: f64 = 12.0;
 
 /// Share of [`DECISIVE_ENERGY`] below which a motion tells nothing of a question.
@@ -254,7 +254,7 @@ impl Situation<'_> {
         let energy = self.questions.iter().map(|question| match question {
             Question::Alternative(other) => {
                 // Each as the truth once, and the mean of what the other's refit leaves: where one can do all that the other
-                // does, only its own truth tells them apart.
+                // does, only its own truth distinguishes them.
                 let reverse = own.discrepancy(&shown[*other], &known[0]);
                 let forward =
                     along(*other).map_or(0.0, |(_, response)| response.discrepancy(&shown[0], &known[*other]));

@@ -1,5 +1,6 @@
 //! Which rigs stand out of their fleet: by their answer, or by a value far from that of the others.
 
+use crate::page::effect_name::effect_name;
 use std::collections::BTreeMap;
 
 use super::row::NOMINAL;
@@ -251,7 +252,7 @@ pub fn label(effect: &str, parameter: &str) -> String {
     match effect {
         NOMINAL => parameter.to_owned(),
         RESIDUAL => "residual over noise".to_owned(),
-        effect => format!("{}: {}", effect.replace('_', " "), parameter.replace('_', " ")),
+        effect => format!("{}: {}", effect_name(effect), parameter.replace('_', " ")),
     }
 }
 

@@ -81,9 +81,9 @@ fn verdicts(rigs: &[Rig<'_>]) -> String {
     for rig in rigs.iter().filter(|rig| !rig.is_failed()) {
         *counts.entry(&rig.head().verdict).or_default() += 1;
     }
-    let told: Vec<String> =
+    let verdicts: Vec<String> =
         counts.iter().map(|(verdict, count)| format!("{} {count}", verdict.replace('_', " "))).collect();
-    if told.is_empty() { String::new() } else { format!("Verdicts: {}.", told.join(", ")) }
+    if verdicts.is_empty() { String::new() } else { format!("Verdicts: {}.", verdicts.join(", ")) }
 }
 
 /// "1 rig", "2 rigs".

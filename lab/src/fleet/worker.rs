@@ -95,12 +95,12 @@ impl RigResult {
     /// For people who watch a run.
     #[must_use]
     pub fn line(&self) -> String {
-        let told = match &self.diagnosis {
+        let outcome = match &self.diagnosis {
             Err(error) => format!("failed: {error}"),
             Ok(diagnosis) if diagnosis.physics.is_empty() => diagnosis.verdict.clone(),
             Ok(diagnosis) => format!("{}: {}", diagnosis.verdict, diagnosis.names().join(", ")),
         };
-        format!("{}: {told}{}", self.name, if self.is_earlier { " (done before)" } else { "" })
+        format!("{}: {outcome}{}", self.name, if self.is_earlier { " (done before)" } else { "" })
     }
 }
 

@@ -21,7 +21,7 @@ const APPROACH_S: f64 = 3.0;
 /// How often the drive is asked where its trajectory stands.
 const STATUS_INTERVAL: Duration = Duration::from_millis(40);
 
-/// Ticks from one effort that is told to the next: both streams at each tick are as much as the line carries.
+/// Ticks from one reported effort to the next: both streams at each tick are as much as the line carries.
 const EFFORT_TICKS: u16 = 2;
 
 /// How long the first sample may take.
@@ -121,7 +121,7 @@ fn approach(from: f64, first: f64) -> Vec<f64> {
     (0..rows).map(|row| from + (first - from) * part(row)).collect()
 }
 
-/// What a drive told of a run.
+/// What a drive reported of a run.
 #[derive(Default)]
 struct Heard {
     samples: Vec<(u32, [f32; 2])>,
@@ -160,7 +160,7 @@ impl Heard {
         self.samples.last().map_or([0.0; 2], |(_, taken)| taken.map(f64::from))
     }
 
-    /// The effort that was told last before `tick`.
+    /// The effort that was reported last before `tick`.
     fn effort(&self, tick: u32) -> f64 {
         self.efforts.range(..=tick).next_back().map_or(0.0, |(_, effort)| f64::from(*effort))
     }

@@ -88,7 +88,7 @@ pub fn status(client: &mut Client, mut take: impl FnMut(Message<'_>)) -> Result<
         Message::Trajectory(found) => status = Some(found),
         other => take(other),
     })?;
-    status.context("the drive does not tell where its trajectory stands")
+    status.context("the drive does not report where its trajectory stands")
 }
 
 /// What `reason` is to an investigation; `position` and `force` were read last, at `time_s`.

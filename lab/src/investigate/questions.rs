@@ -5,6 +5,7 @@ use crate::diagnose::report::diagnosis::{Diagnosis, Value};
 use crate::experiment_design::explanation::{Explanation, UNKNOWN};
 use crate::experiment_design::parameters::{self, Parameter};
 use crate::experiment_design::planner::Question;
+use crate::page::effect_name::effect_name;
 
 /// Relative half-width of a 95 % interval above which a value is still open.
 pub const WIDE_INTERVAL: f64 = 0.1;
@@ -66,5 +67,5 @@ pub fn words(physics: &[String]) -> String {
 
 /// A name as a sentence has it.
 fn spaced(name: &str) -> String {
-    name.replace('_', " ")
+    effect_name(name)
 }

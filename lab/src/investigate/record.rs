@@ -88,7 +88,7 @@ pub struct State {
     pub summary: String,
     /// Names of the answer.
     pub physics: Vec<String>,
-    /// Sets of names that cannot be told from it.
+    /// Sets of names that the data do not rule out.
     pub alternatives: Vec<Vec<String>>,
     /// Values of the answer with their 95 % intervals.
     pub values: Vec<ValueState>,

@@ -1,8 +1,9 @@
-//! The page of an investigation: what was open, what was run, what it told.
+//! The page of an investigation: what was open, what was run, what it answered.
 
 mod intervals;
 mod motion;
 
+use crate::page::effect_name::effect_name;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -57,10 +58,10 @@ fn table(rounds: &[Round]) -> Markup {
         section {
             h2 { "Round by round" }
             div.wide { table {
-                thead { tr { th { "round" } th.text { "motion" } th.text { "answer" } th.text { "cannot be told from it" } th { "residual over noise" } } }
+                thead { tr { th { "round" } th.text { "motion" } th.text { "answer" } th.text { "not ruled out" } th { "residual over noise" } } }
                 tbody { @for round in rounds { tr {
                     th { (round.number) }
-                    td.text { (round.trial.as_ref().map_or("given recordings".to_owned(), |trial| trial.motions.join("; then "))) }
+                    td.text { (round.trial.as_ref().map_or_else(|| given(round).to_owned(), |trial| trial.motions.join("; then "))) }
                     @match &round.state {
                         Some(state) => {
                             td.text { (answer(state)) }
@@ -73,6 +74,11 @@ fn table(rounds: &[Round]) -> Markup {
             } }
         }
     }
+}
+
+/// What a round without a trial, the first, begins with.
+fn given(round: &Round) -> &'static str {
+    if round.state.is_some() { "given recordings" } else { "no recording was given" }
 }
 
 fn answer(state: &State) -> String {
@@ -100,7 +106,7 @@ fn section(round: &Round, investigation: &Investigation, rig: &Rig, folder: &Pat
             p { (ending(&trial.ending)) " " (used(trial)) }
             @if !trial.faults.is_empty() { ul.notices { @for fault in &trial.faults { li { (fault) } } } }
             @if !trial.is_used { p.notices { "The diagnosis goes on without this recording." } }
-            @if let Some(state) = &round.state { p { strong { "What it told: " } (state.summary) } }
+            @if let Some(state) = &round.state { p { strong { "Answer: " } (state.summary) } }
         }
     }
 }
@@ -151,6 +157,6 @@ fn row(value: &ValueState) -> Markup {
         format!("{} to {}", plain(low, &value.unit), plain(high, &value.unit))
     });
     html! {
-        tr { th { (value.effect.replace('_', " ")) } td { (value.name.replace('_', " ")) } td { (plain(value.value, &value.unit)) } td { (interval) } }
+        tr { th { (effect_name(&value.effect)) } td { (value.name.replace('_', " ")) } td { (plain(value.value, &value.unit)) } td { (interval) } }
     }
 }

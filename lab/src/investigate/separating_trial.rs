@@ -66,14 +66,14 @@ pub fn separating_trial(rig: &Rig, found: &Found, trials: &[Recording]) -> Optio
     let (explanations, questions) = (&explanations, &questions);
     let situation = Situation { explanations, questions, trials, limits: &limits, noise, closed_loop, ease: 1.0 };
     let plan = plan(&situation)?;
-    let told = words.iter().zip(&plan.expected).map(|(words, energy)| {
+    let answered = words.iter().zip(&plan.expected).map(|(words, energy)| {
         let enough = if *energy >= DECISIVE_ENERGY { "it decides" } else { "too little to decide for certain" };
         format!("{words}: {enough}")
     });
     let text = format!(
         "{}. It goes no farther, quicker or harder than the recordings did. What it is expected to tell: {}.",
         capitalized(&plan.motions.join("; then ")),
-        told.collect::<Vec<_>>().join("; "),
+        answered.collect::<Vec<_>>().join("; "),
     );
     let time = (0..plan.reference.len()).map(|row| row as f64 / closed_loop.rate_hz).collect();
     Some(Experiment { text, time, reference: plan.reference })

@@ -41,7 +41,7 @@ pub struct Session<'a> {
     pub rounds: u64,
     /// Set once the user wants to stop.
     pub interrupted: &'a AtomicBool,
-    /// Is told how it goes.
+    /// Receives messages of progress.
     pub say: &'a dyn Fn(&str),
 }
 
@@ -312,22 +312,25 @@ fn ease(investigation: &Investigation) -> f64 {
 
 /// Why this motion, in a sentence.
 fn why(plan: &Plan, standing: &Standing) -> String {
-    let told = standing.questions.iter().zip(&plan.expected).filter(|(_, energy)| **energy >= 1.0);
-    let mut reasons: Vec<String> = told.map(|((_, words), _)| words.clone()).collect();
+    let answered = standing.questions.iter().zip(&plan.expected).filter(|(_, energy)| **energy >= 1.0);
+    let mut reasons: Vec<String> = answered.map(|((_, words), _)| words.clone()).collect();
     let unasked = standing.questions.len() - reasons.len();
     if plan.new_states >= 0.01 {
         reasons.push(format!("{:.0} % of the states in reach were not visited yet", 100.0 * plan.new_states));
     }
     let mut text = capitalized(&plan.motions.join("; then "));
-    text.push_str(&format!(", because of what is open: {}", reasons.join("; ")));
+    text.push_str(&format!(", because this is open: {}", reasons.join("; ")));
     if unasked > 0 {
         text.push_str(&format!("; {unasked} of the open questions it does not answer within the limits"));
     }
     if standing.found.as_ref().is_some_and(|found| has_unknown(&found.answer)) {
-        text.push_str("; where unknown structure lies is looked for by what was not visited");
+        text.push_str("; unknown structure is searched for in states that were not visited");
     }
     let names: Vec<String> = standing.explanations.iter().map(|one| words(&one.physics)).collect();
-    text + &format!(". It keeps the limits with a margin under each of: {}.", names.join(", "))
+    text + &format!(
+        ". The predicted motion keeps the limits with a margin under every explanation ({}).",
+        names.join(", ")
+    )
 }
 
 /// The reference as a file: `t_s` and `reference_m` or `reference_rad`.

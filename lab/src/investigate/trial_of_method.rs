@@ -85,7 +85,7 @@ pub struct Row {
 pub struct Answer {
     /// Names.
     pub named: Vec<String>,
-    /// What cannot be told from it.
+    /// Sets of names that the data do not rule out.
     pub alternatives: Vec<Vec<String>>,
 }
 

@@ -37,7 +37,7 @@ impl ChannelSummary {
         });
         let is_time = time.is_some_and(|(time, _)| time == channel.name);
         let period = clock.and_then(median_period);
-        // Gaps are told where the time is listed, or where every channel has its own.
+        // Gaps are listed where the time is listed, or where every channel has its own.
         if let (Some(clock), Some(period)) = (clock, period)
             && (is_time || channel.clock.is_some())
         {

@@ -29,7 +29,7 @@ const WORDS: [(&str, &[&str]); 7] = [
     ("load", &["load", "load_n", "load_nm", "gravity", "inverse_dynamics"]),
 ];
 
-/// Names that a recording has without being told.
+/// Names of columns that a rig file need not state.
 const DEFAULTS: [&str; 12] = [
     "t_s",
     "position_m",

@@ -90,9 +90,9 @@ fn found(trial: &Trial, method: &Method, summary: Summary, lasted: &Markup) -> M
 fn doubt(summary: Summary) -> &'static str {
     let vague = |value: f64, half_width: f64| half_width >= value.abs();
     match (vague(summary.stiffness, summary.stiffness_half_width), vague(summary.damping, summary.damping_half_width)) {
-        (true, true) => ", neither of which can be told from none at all",
-        (true, false) => " (this stiffness cannot be told from none at all)",
-        (false, true) => " (this damping cannot be told from none at all)",
+        (true, true) => ", neither of which is distinguishable from zero",
+        (true, false) => " (this stiffness is not distinguishable from zero)",
+        (false, true) => " (this damping is not distinguishable from zero)",
         (false, false) => "",
     }
 }

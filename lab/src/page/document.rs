@@ -157,7 +157,7 @@ fn figures() -> Markup {
         (
             "innovation",
             "Innovation",
-            "Measured force minus what the estimate before this sample foretold. Only noise around zero means that the law explains the touch.",
+            "Measured force minus what the estimate before this sample predicted. Only noise around zero means that the law explains the touch.",
         ),
     ];
     html! {

@@ -18,6 +18,7 @@ const MIN_SHARE: f64 = 0.002;
 pub fn page(image: &Image, cases: &[Case], figures: &[Figures]) -> String {
     let sections: Vec<(usize, &Case, &Figures)> =
         cases.iter().skip(1).zip(figures).enumerate().map(|(at, (case, figures))| (at, case, figures)).collect();
+    let empty = cases.first().and_then(|case| case.passes.first()).map_or(0, |pass| pass.instructions);
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -31,8 +32,10 @@ pub fn page(image: &Image, cases: &[Case], figures: &[Figures]) -> String {
             }
             body { main {
                 h1 { "Where the instructions go" }
-                p { (NO_BOARD) " Each bar is one update on the mean; its parts are the functions that it runs through, in the \
-                     order of their share. Open one for its listing: times a mean update, address, instruction." }
+                p { (NO_BOARD) " Each bar is the mean update; its parts are the functions that it runs through, the largest first. Open \
+                     one for its listing: executions in the mean update, address, instruction. The parts include the call of the \
+                     measurement itself ("
+                     (empty) " instructions), which is subtracted from the figure above each bar." }
                 @for (_, case, figures) in &sections { (estimator(image, case, figures)) }
             } }
         }
@@ -55,8 +58,8 @@ fn estimator(image: &Image, case: &Case, figures: &Figures) -> Markup {
     html! {
         section {
             h2 { (figures.name) @if let Some(window) = figures.window { ", window " (window) } }
-            p { (format!("{:.1}", figures.instructions_mean)) " instructions on the mean, " (figures.instructions_worst)
-                " at sample " (figures.worst_sample) "; " (figures.cycles_lo) " to " (figures.cycles_hi) " cycles" }
+            p { (format!("{:.1}", figures.instructions_mean)) " instructions in the mean, at most " (figures.instructions_worst)
+                ", at sample " (figures.worst_sample) "; " (figures.cycles_lo) " to " (figures.cycles_hi) " cycles" }
             div.bar {
                 @for (at, (start, count)) in order.iter().enumerate().filter(|(_, (_, count))| count / total > MIN_SHARE) {
                     span class=(format!("part c{}", at % 6)) style=(format!("flex-grow:{count:.3}"))

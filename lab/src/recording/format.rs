@@ -1,4 +1,4 @@
-//! Which format a file is in: told by its first bytes, and held against its ending.
+//! Which format a file is in: detected by its first bytes, and compared with its ending.
 
 use std::path::Path;
 

@@ -153,8 +153,8 @@ impl Running {
         let update = move |sample| {
             let event = stream.update(sample)?;
             let estimate = tracker.update(&stream, &event);
-            let told = if event.reading.contact { tracker.state().without_start() } else { None };
-            Ok(Estimate { impedance: told.unwrap_or(estimate.impedance), ..estimate })
+            let settled = if event.reading.contact { tracker.state().without_start() } else { None };
+            Ok(Estimate { impedance: settled.unwrap_or(estimate.impedance), ..estimate })
         };
         Ok(Self(Box::new(update)))
     }

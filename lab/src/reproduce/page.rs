@@ -76,7 +76,7 @@ fn bench(results: &Results) -> Markup {
                 "), run by " code { "palpate simulate" } "; copy one and change it."
             }
             p {
-                "The paper leaves some things open, so each table was made under three readings. How far a reading is from the paper's tables is told as a factor, the mean over all of its figures; 1 would be the paper itself:"
+                "The paper leaves some things open, so each table was made under three readings. How far a reading is from the paper's tables is given as a factor, the mean over all of its figures; 1 would be the paper itself:"
             }
             ul { @for study in &results.studies { li { (study.reading.name) ": " strong { "factor " (format!("{:.2}", distance(study))) } (settings(study)) } } }
         }

@@ -1,6 +1,6 @@
 //! The paper's own figures, as far as they are at hand: what is not here is shown as a dash, never guessed.
 //!
-//! The tables are told apart by what they hold; their numbers in the paper are I: RMSE% by contact, II: RMSE% by window, III: standard
+//! The tables are distinguished by what they hold; their numbers in the paper are I: RMSE% by contact, II: RMSE% by window, III: standard
 //! deviation of K by window, IV: updates per second.
 
 /// Methods in the order of every table.

@@ -1,6 +1,6 @@
-//! The white noise of a channel, told from whatever moves slowly beneath it.
+//! The white noise of a channel, separated from whatever moves slowly beneath it.
 
-/// Samples that one residual looks at.
+/// Samples that one residual spans.
 const FILTER_SPAN: usize = 7;
 
 /// Residuals whose mean square makes one vote.
@@ -29,7 +29,7 @@ pub fn white_noise(time: &[f64], values: &[f64]) -> f64 {
     let residuals: Vec<_> =
         (0..=rows - reach).map(|at| residual(&time[at..at + reach], &values[at..at + reach])).collect();
     let mut votes: Vec<_> = residuals.chunks(BLOCK_SAMPLES).map(mean_square).collect();
-    // A short remainder votes as loudly as a block: leave it out where there is anything else.
+    // A short remainder counts as much as a block: leave it out where there is anything else.
     if residuals.len() % BLOCK_SAMPLES != 0 && votes.len() > 1 {
         votes.pop();
     }

@@ -60,7 +60,7 @@ fn cards(json: &Value, html: &str) -> Vec<String> {
                 wrong.push(format!("page: {:?} is not {value}", words(shown)));
             }
         }
-        let gain = part(card, "it takes away ", " of what the law without it leaves");
+        let gain = part(card, "it takes away ", " of the mean square that the law without it leaves");
         if physics["name"] != "unknown" && !percent_agrees(gain, float(&physics["evidence"]["held_out_gain"])) {
             wrong.push(format!("page: {gain:?} is not {}", physics["evidence"]));
         }
@@ -94,7 +94,9 @@ fn fits(json: &Value, html: &str) -> Vec<String> {
         }
         let taken = words(part(
             html,
-            &format!("Of what refitted values leave in the {name} above the noise, the named physics takes away "),
+            &format!(
+                "Of the mean square that refitted values leave in the {name} above the noise, the named physics takes away "
+            ),
             "</strong>",
         ));
         if !taken.is_empty() && !percent_agrees(&taken, float(&fit["explained_share"])) {
@@ -129,8 +131,10 @@ fn shares(json: &Value, html: &str) -> Vec<String> {
     }
     for other in all(json, "rivals") {
         let names: Vec<String> =
-            all(other, "physics").iter().map(|name| name.as_str().unwrap().replace('_', " ")).collect();
-        let of_names = |row: &&&[String; 2]| names.iter().all(|name| row[0].contains(name.as_str()));
+            all(other, "physics").iter().map(|name| name.as_str().unwrap().replace('_', " ").to_lowercase()).collect();
+        let of_names = |row: &&&[String; 2]| {
+            names.iter().all(|name| row[0].to_lowercase().replace('-', " ").contains(name.as_str()))
+        };
         let gain = float(&other["held_out_gain"]);
         if !others.iter().filter(of_names).any(|row| percent_agrees(&row[1], gain)) {
             wrong.push(format!("page: no {names:?} with {gain}"));
@@ -210,12 +214,14 @@ fn nominal(json: &Value, html: &str) -> Vec<String> {
     wrong
 }
 
-/// What the pictures draw has the residuals that the figures tell.
+/// What the pictures draw has the residuals and the expected noise that the figures state.
 fn traces(json: &Value, html: &str) -> Vec<String> {
     let mut wrong = Vec::new();
     let description: Value = serde_json::from_str(part(html, "id=\"description\">", "</script>")).unwrap();
     for fit in all(json, "channels") {
-        for (line, key) in [("given", "as_given"), ("refitted", "refitted"), ("improved", "improved")] {
+        for (line, key) in
+            [("given", "as_given"), ("refitted", "refitted"), ("improved", "improved"), ("floor", "noise_floor")]
+        {
             let (mut sum, mut count) = (0.0, 0);
             for trace in all(&description, "trials")
                 .iter()
@@ -230,13 +236,17 @@ fn traces(json: &Value, html: &str) -> Vec<String> {
                 }
                 let seen = bytes(html, &format!("t{}-seen", trace["id"]));
                 let rows = measured.iter().zip(&simulated).zip(&seen).filter(|(_, seen)| **seen == 1);
-                let left = rows.map(|((m, s), _)| f64::from(*m) - f64::from(*s));
+                let is_noise = line == "floor";
+                let left = rows.map(|((m, s), _)| if is_noise { f64::from(*s) } else { f64::from(*m) - f64::from(*s) });
                 left.for_each(|left| (sum, count) = (sum + left * left, count + 1));
             }
-            let (drawn, told) = ((sum / f64::from(count.max(1))).sqrt(), float(&fit[key]));
+            let (drawn, stated) = ((sum / f64::from(count.max(1))).sqrt(), float(&fit[key]));
             // Columns are in single precision, of forces a thousand times the residual.
-            if !near(drawn, told, 5e-3) {
-                wrong.push(format!("page: the picture's {key} of the {} is {drawn}, not {told}", text(fit, "channel")));
+            if !near(drawn, stated, 5e-3) {
+                wrong.push(format!(
+                    "page: the picture's {key} of the {} is {drawn}, not {stated}",
+                    text(fit, "channel")
+                ));
             }
         }
     }

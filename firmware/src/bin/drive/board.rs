@@ -47,7 +47,7 @@ pub struct Board {
     pub receiver: Rx<USART1>,
     /// The core's own peripherals.
     pub core: cortex_m::Peripherals,
-    /// QEMU, told by a debug unit that reads zero.
+    /// QEMU, recognised by a debug unit that reads zero.
     pub emulator: bool,
     /// The chip's own number.
     pub chip: [u32; 3],
@@ -90,7 +90,7 @@ impl Board {
         );
         let converter = BoundedSpi::new(converter, a.pa15.into_push_pull_output(), Delay, POLLS).ok()?;
         let mut converter = Ads8681::new(converter, Delay);
-        // A converter that is not there is told of by every tick.
+        // A converter that is not there is reported by every tick.
         let _ = converter.set_up(calibration.range);
         let (timer, _) = Qei::new(chip.TIM4, (b.pb6, b.pb7), &mut rcc).release();
 

@@ -61,7 +61,7 @@ fn main() -> ! {
 
     let estimator = build(ESTIMATOR, &settings, &calibration);
     let (received, bytes) = QUEUES.received.split();
-    let (reports, told) = QUEUES.reports.split();
+    let (reports, reader) = QUEUES.reports.split();
     let (feed, inputs) = QUEUES.inputs.split();
     let (jobs, todo) = QUEUES.jobs.split();
     let (new_settings, settings_to_apply) = QUEUES.new_settings.split();
@@ -89,7 +89,7 @@ fn main() -> ! {
     let idle = Idle {
         decoder: RequestDecoder::new(),
         line,
-        reports: told,
+        reports: reader,
         feed,
         jobs,
         new_settings,
@@ -201,7 +201,7 @@ impl Idle {
         }
     }
 
-    /// What was asked to be told of a report; a fault that begins is told in any case that estimates are.
+    /// What was requested of a report; a fault that begins is reported whenever estimates are.
     fn publish(&mut self, report: &Report) {
         let begun = !self.before.contains(report.faults);
         (self.before, self.zero) = (report.faults, report.zero);

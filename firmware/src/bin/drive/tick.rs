@@ -180,7 +180,7 @@ fn code(state: TrajectoryState) -> u32 {
     }
 }
 
-/// Where the trajectory stands, as the interrupt told it last.
+/// Where the trajectory stands, as the interrupt reported it last.
 pub fn trajectory_status() -> TrajectoryStatus {
     let state = match TRAJECTORY[0].load(Ordering::Relaxed) {
         0 => TrajectoryState::Idle,

@@ -23,7 +23,7 @@ const TICK_HZ: u32 = 1_000;
 /// Samples a block: one semihosting call stops the core for about as long whatever it carries.
 const BLOCK: usize = 64;
 
-/// Why the image gave up, told on the host's standard error.
+/// Why the image gave up, written to the host's standard error.
 type Fault = &'static str;
 
 #[entry]

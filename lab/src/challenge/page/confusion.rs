@@ -1,5 +1,6 @@
 //! What was concealed against what was named.
 
+use crate::page::effect_name::effect_name;
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
@@ -24,7 +25,7 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
             h2 { "Concealed effect against named effect" }
             p { "Rows: concealed effect. Columns: named effect. Correct answers are on the diagonal. All strengths, down to 0.1." }
             div.wide { table.confusion {
-                thead { tr { th { "concealed" } @for column in &columns { th { span { (column.replace('_', " ")) } } } } }
+                thead { tr { th { "concealed" } @for column in &columns { th { span { (effect_name(column)) } } } } }
                 tbody { @for ((_, truth), said) in &counts { (line(truth, said, &columns)) } }
             } }
         }
@@ -53,7 +54,7 @@ fn line(truth: &str, said: &BTreeMap<String, usize>, columns: &[&str]) -> Markup
     let wanted = if truth.ends_with("(outside)") { "unknown" } else { truth };
     html! {
         tr {
-            th { (truth.replace('_', " ")) }
+            th { (effect_name(truth)) }
             @for column in columns {
                 @let count = said.get(*column).copied().unwrap_or(0);
                 @let share = format!("--share: {:.2}", count as f64 / all.max(1) as f64);

@@ -1,5 +1,6 @@
 //! The failures, by name.
 
+use crate::page::effect_name::effect_name;
 use maud::{Markup, html};
 use palpate_cases::excitation::Excitation;
 use palpate_cases::sensors::SensorGrade;
@@ -25,8 +26,7 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
 }
 
 fn line(row: &CaseScore) -> Markup {
-    let names =
-        |names: &[String]| if names.is_empty() { "nothing".to_owned() } else { names.join(", ").replace('_', " ") };
+    let names = |names: &[String]| if names.is_empty() { "nothing".to_owned() } else { effect_name(&names.join(", ")) };
     html! {
         tr {
             th { (row.index) small { (super::title(row.source)) } }

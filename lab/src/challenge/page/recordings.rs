@@ -21,8 +21,8 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
             }
             (table(recorded))
             p.fine {
-                "Residuals are root mean squares, refitted nominal law to named physics (floor). *: of stretches of the same trial, each by what the \
-                 others taught, where a recording cannot be parted."
+                "Residuals are root mean squares, refitted nominal law to named physics (expected noise). *: of stretches of the same trial, each predicted from \
+                 the others, where a recording cannot be split."
             }
         }
     }
@@ -31,7 +31,7 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
 fn table(recorded: &RecordingScores) -> Markup {
     html! {
         div.wide { table.recorded {
-            thead { tr { th { "recording" } th.text { "known" } th.text { "verdict" } th.text { "named" } th.text { "rivals" } th { "residual" } th.text { "judgement" } } }
+            thead { tr { th { "recording" } th.text { "known" } th.text { "verdict" } th.text { "named" } th.text { "not ruled out" } th { "residual" } th.text { "judgement" } } }
             tbody { @for row in &recorded.rows { (row_of(row)) } }
         } }
     }
@@ -56,7 +56,7 @@ fn row_of(row: &SpecimenScore) -> Markup {
     }
 }
 
-/// What taught and what was scored.
+/// What was trained on and what was scored.
 fn parted(row: &SpecimenScore) -> String {
     let stems = |files: &[String]| {
         let stems: Vec<&str> = files.iter().map(|file| file.trim_end_matches(".csv")).collect();
@@ -64,7 +64,7 @@ fn parted(row: &SpecimenScore) -> String {
     };
     match &row.no_split_reason {
         Some(why) => format!("not parted: {why}"),
-        None if row.training == row.scored => "taught by its first strokes, scored on the others".to_owned(),
-        None => format!("taught by {}; scored on {}", stems(&row.training), stems(&row.scored)),
+        None if row.training == row.scored => "trained on its first strokes, scored on the others".to_owned(),
+        None => format!("trained on {}; scored on {}", stems(&row.training), stems(&row.scored)),
     }
 }

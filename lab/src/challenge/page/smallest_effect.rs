@@ -1,5 +1,6 @@
 //! An effect that no eye sees, and what is said of it.
 
+use crate::page::effect_name::effect_name;
 use std::fmt::Write as _;
 
 use maud::{Markup, html};
@@ -38,8 +39,8 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
         section {
             h2 { "The smallest effect that was named correctly" }
             p {
-                "Case " (row.index) ": " (row.truth.join(" and ").replace('_', " ")) " of " (format!("{:.2}", row.strength))
-                " of the floor. Recorded force and the simulation without it, values refitted, lie over one another; row by row the difference \
+                "Case " (row.index) ": " (effect_name(&row.truth.join(" and "))) " of " (format!("{:.2}", row.strength))
+                " of the expected noise. Recorded force and the simulation without it, values refitted, lie over one another; row by row the difference \
                  is noise, and the effect, as the tool models it, runs within. The tool says: " strong { (picture.named) }
             }
             (panel("Force over time", picture.unit, &picture.time, &[("recorded", &picture.recorded), ("simulated", &picture.simulated)]))

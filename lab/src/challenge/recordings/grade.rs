@@ -15,14 +15,14 @@ pub const DRY: [&str; 2] = ["hysteresis", "coulomb_friction"];
 pub enum Grade {
     /// Stated physics is named, and nothing that is not known.
     Named,
-    /// Nothing that is stated is named, nor anything else that is not known; the unknown is owned.
+    /// Nothing that is stated is named, nor anything else that is not known; the unknown is reported.
     Owned,
-    /// The data do not decide, and the answer says so: a rival of it names nothing but what is known, or dry friction is
+    /// The data do not decide, and the answer says so: an alternative to it names nothing but what is known, or dry friction is
     /// left open against damping.
     Undecidable,
     /// Something is named that is not known of it, or claimed as decided that is not.
     Wrong,
-    /// Neither named nor owned.
+    /// Neither named nor reported as unknown.
     Missed,
 }
 
@@ -32,7 +32,7 @@ impl Grade {
     pub fn words(self) -> &'static str {
         match self {
             Self::Named => "named",
-            Self::Owned => "owned",
+            Self::Owned => "reported as unknown",
             Self::Undecidable => "undecidable and said so",
             Self::Wrong => "wrong",
             Self::Missed => "missed",
@@ -85,7 +85,7 @@ fn is_right(set: &RecordingSet, names: &[String]) -> bool {
         && names.iter().all(|name| is_known(set, name) || name == UNKNOWN)
 }
 
-/// What came of the answer `told` on a recording of `set`.
+/// The grade of a diagnosis of a recording of `set`.
 #[must_use]
 pub fn grade(set: &RecordingSet, diagnosis: &DiagnosisJson) -> Grade {
     let (named, wrong) = (named(diagnosis), wrong(set, diagnosis));
@@ -107,7 +107,7 @@ mod tests {
     use crate::challenge::recordings::known_physics::RECORDING_SETS;
     use serde_json::json;
 
-    fn told(named: &[&str], rivals: &[&str], finding: &str) -> DiagnosisJson {
+    fn answer(named: &[&str], rivals: &[&str], finding: &str) -> DiagnosisJson {
         let physics: Vec<_> = named.iter().map(|name| json!({"name": name, "parameters": []})).collect();
         let rivals: Vec<_> =
             rivals.iter().map(|names| json!({"physics": names.split('+').collect::<Vec<_>>()})).collect();
@@ -141,13 +141,16 @@ mod tests {
             (piston, &["force_bias", "unknown"], &[], "", Grade::Owned),
             (piston, &["force_bias"], &[], "", Grade::Missed),
         ] {
-            assert_eq!(grade(set, &told(named, rivals, finding)), expected, "{named:?}");
+            assert_eq!(grade(set, &answer(named, rivals, finding)), expected, "{named:?}");
         }
     }
 
     #[test]
     fn every_grade_has_its_words() {
         let all = [Grade::Named, Grade::Owned, Grade::Undecidable, Grade::Wrong, Grade::Missed];
-        assert_eq!(all.map(Grade::words), ["named", "owned", "undecidable and said so", "wrong", "missed"]);
+        assert_eq!(
+            all.map(Grade::words),
+            ["named", "reported as unknown", "undecidable and said so", "wrong", "missed"]
+        );
     }
 }

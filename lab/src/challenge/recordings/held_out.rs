@@ -28,7 +28,7 @@ pub enum OwnToTrial {
     PlaceAndScale,
 }
 
-/// The nominal law of `rig` with the values that `trials` teach: least squares, no effect added.
+/// The nominal law of `rig` with values fitted to `trials`: least squares, no effect added.
 ///
 /// # Errors
 /// Trials that the rig does not predict.
@@ -44,8 +44,8 @@ pub fn refitted(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Rig> {
         contact.surface = fit.values[index::SURFACE];
     } else if let Some(table) = &mut fresh.drive {
         let nominal = drive::prepare::nominal(rig, trials, known).context("a rig without a drive")?;
-        let taught = drive::nominal::refitted(&drive::prepare::trials(rig, trials), &nominal);
-        [table.inertia, table.viscous] = taught.context("trials in which nothing moves")?;
+        let refitted = drive::nominal::refitted(&drive::prepare::trials(rig, trials), &nominal);
+        [table.inertia, table.viscous] = refitted.context("trials in which nothing moves")?;
     }
     Ok(fresh)
 }

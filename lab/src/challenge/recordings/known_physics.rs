@@ -5,9 +5,9 @@ use super::held_out::OwnToTrial;
 /// How the recordings of a set become specimens, and which of their rows no diagnosis sees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Split {
-    /// All files are trials of one specimen, which has this name: every other one by name teaches, the others are scored.
+    /// All files are trials of one specimen, which has this name: every other one by name is trained on, the others are scored.
     Trials(&'static str),
-    /// Each file is a specimen: its strokes up to the turn nearest the middle teach, those after it are scored.
+    /// Each file is a specimen: its strokes up to the turn nearest the middle are trained on, those after it are scored.
     Strokes,
     /// Each file is a specimen, and cannot be parted, for this reason.
     Whole(&'static str),
@@ -117,7 +117,7 @@ const AXIS: RecordingSet = RecordingSet {
 const ROBOT_AXIS: RecordingSet = RecordingSet {
     // The READMEs: either is right, the slow share is too short to tell.
     stated: &["coulomb_friction", "stribeck_friction"],
-    description: "Coulomb or Stribeck friction, not told apart, and an offset",
+    description: "Coulomb or Stribeck friction, not distinguished, and an offset",
     ..AXIS
 };
 
@@ -141,7 +141,7 @@ pub const RECORDING_SETS: [RecordingSet; 32] = [
         allowed: &["force_bias"],
         has_unlisted_physics: true,
         friction_is_open: true,
-        description: "pressure times area, which differs by stroke; friction of the seal with presliding, not told from viscous",
+        description: "pressure times area, which differs by stroke; friction of the seal with presliding, not distinguished from viscous",
     },
     RecordingSet { files: &["Cherry-MX-Red", "Gateron", "JWK"], ..SWITCH },
     RecordingSet {
@@ -158,7 +158,7 @@ pub const RECORDING_SETS: [RecordingSet; 32] = [
         description: "plastic depth, power law, and a sudden jump of 40 nm",
         ..DIAMOND
     },
-    // Each piece was pressed on two days: the first teaches.
+    // Each piece was pressed on two days: the first is trained on.
     RecordingSet { files: &["meat_230327_FF1", "meat_230331_FF1"], split: Split::Trials("meat_FF1"), ..TISSUE },
     RecordingSet { files: &["meat_230327_FF2", "meat_230331_FF2"], split: Split::Trials("meat_FF2"), ..TISSUE },
     RecordingSet { files: &["meat_230327_RDG1", "meat_230331_RDG1"], split: Split::Trials("meat_RDG1"), ..TISSUE },

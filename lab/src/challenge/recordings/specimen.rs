@@ -11,7 +11,7 @@ use crate::qemu_bench::project;
 use crate::recording::Recording;
 use crate::rig::Rig;
 
-/// A specimen, some of whose trials teach while others are kept back.
+/// A specimen, some of whose trials are trained on while others are held out.
 #[derive(Debug)]
 pub struct Specimen {
     /// "tissue_indentation/meat_FF".
@@ -77,7 +77,7 @@ impl Specimen {
         (1..=self.training.len()).map(|number| format!("trial-{number}.csv")).collect()
     }
 
-    /// Makes `folder`, and writes the rig file and the trials that teach to it, and nothing else.
+    /// Makes `folder`, and writes the rig file and the training trials to it, and nothing else.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -140,7 +140,7 @@ fn specimens(root: &Path, set: &RecordingSet) -> Vec<(String, Vec<PathBuf>)> {
     }
 }
 
-/// Trials that teach, those kept back, and why there are none of these.
+/// Training trials, those held out, and why there are none of these.
 fn split_trials(split: Split, trials: Vec<Recording>) -> (Vec<Recording>, Vec<Recording>, Option<&'static str>) {
     match split {
         Split::Whole(why) => (trials, Vec::new(), Some(why)),

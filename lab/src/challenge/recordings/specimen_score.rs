@@ -1,5 +1,6 @@
 //! What came of the real recordings.
 
+use crate::page::effect_name::effect_name;
 use serde::{Deserialize, Serialize};
 
 use super::grade::{self, Grade};
@@ -15,17 +16,17 @@ pub struct RecordingScores {
     pub n: usize,
     /// Stated physics is named, and nothing that is not known.
     pub named: usize,
-    /// Of these, the unknown is owned beside it.
+    /// Of these, the unknown is reported beside it.
     pub rest_owned: usize,
-    /// Nothing that is stated is named, nor anything that is not known; the unknown is owned.
+    /// Nothing that is stated is named, nor anything that is not known; the unknown is reported.
     pub owned: usize,
     /// The data do not decide, and the answer says so.
     pub undecidable: usize,
     /// Something is named that is not known, or claimed as decided that is not.
     pub wrong: usize,
-    /// Nothing that is stated is named, and no unknown owned.
+    /// Nothing that is stated is named, and no unknown reported.
     pub missed: usize,
-    /// Specimens with trials that were kept back, or stretches that did not teach.
+    /// Specimens with held-out trials, or held-out stretches.
     pub held_back: usize,
     /// On these, the residual of the improved model over that of the refitted nominal law, median.
     pub left_median: f64,
@@ -73,13 +74,13 @@ pub struct SpecimenScore {
     /// What the sensors leave, by the diagnosis.
     #[serde(rename = "floor")]
     pub noise_rms: Option<f64>,
-    /// Stretches of the trials that taught, each left by what the others taught, as the diagnosis tells it.
+    /// Stretches of the training trials, each predicted by the others, as the diagnosis reports it.
     #[serde(rename = "stretches")]
     pub cross_validated: ResidualPair,
     /// Trials that no diagnosis saw, nothing fitted but what belongs to a trial; none where the specimen cannot be parted.
     #[serde(rename = "unseen")]
     pub held_out: Option<ResidualPair>,
-    /// Files that taught.
+    /// Training files.
     #[serde(rename = "taught")]
     pub training: Vec<String>,
     /// Files, or parts of files, that were kept back and scored.
@@ -103,7 +104,7 @@ pub struct ResidualPair {
 }
 
 impl SpecimenScore {
-    /// Holds what was `told` of `entry`, or why nothing was, against what is known of it.
+    /// Compares the diagnosis of `entry`, or why there is none, with what is known of it.
     #[must_use]
     pub fn score(entry: &Specimen, diagnosis: Result<&DiagnosisJson, &str>, seconds: f64) -> Self {
         let own = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
@@ -150,7 +151,7 @@ impl SpecimenScore {
         row
     }
 
-    /// Whether the unknown is owned beside what is named.
+    /// Whether the unknown is reported beside what is named.
     #[must_use]
     pub fn owns_rest(&self) -> bool {
         self.grade == Grade::Named && self.named.iter().any(|name| name == UNKNOWN)
@@ -162,14 +163,14 @@ impl SpecimenScore {
         let mut words = match self.grade {
             Grade::Wrong if self.wrong.is_empty() => "wrong: claims what kind of friction".to_owned(),
             Grade::Wrong => format!("wrong: {}", spaced(&self.wrong)),
-            Grade::Named if self.owns_rest() => "named, and the rest owned".to_owned(),
+            Grade::Named if self.owns_rest() => "named, and the rest reported as unknown".to_owned(),
             other => other.words().to_owned(),
         };
         if self.grade == Grade::Named && !self.missing.is_empty() {
             words += &format!("; not {}", spaced(&self.missing));
         }
         if self.leaves_friction_open && self.grade != Grade::Undecidable {
-            words += "; damping not told from dry friction, and said so";
+            words += "; damping not distinguished from dry friction, and said so";
         }
         words
     }
@@ -200,7 +201,7 @@ impl SpecimenScore {
 /// Names as a person writes them.
 #[must_use]
 pub fn spaced(names: &[String]) -> String {
-    if names.is_empty() { "nothing".to_owned() } else { names.join(", ").replace('_', " ") }
+    if names.is_empty() { "nothing".to_owned() } else { effect_name(&names.join(", ")) }
 }
 
 impl ResidualPair {
@@ -354,14 +355,14 @@ pub(in crate::challenge) mod tests {
     fn a_row_says_what_came_of_it() {
         let of = |grade, named: &[&str]| row(grade, named, None);
         assert_eq!(of(Grade::Named, &["gravity_load"]).words(), "named");
-        assert_eq!(of(Grade::Named, &["gravity_load", UNKNOWN]).words(), "named, and the rest owned");
+        assert_eq!(of(Grade::Named, &["gravity_load", UNKNOWN]).words(), "named, and the rest reported as unknown");
         let partly =
             SpecimenScore { missing: vec!["coulomb_friction".to_owned()], ..of(Grade::Named, &["gravity_load"]) };
-        assert_eq!(partly.words(), "named; not coulomb friction");
+        assert_eq!(partly.words(), "named; not Coulomb friction");
         let missed = SpecimenScore { missing: vec!["coulomb_friction".to_owned()], ..of(Grade::Missed, &[]) };
         assert_eq!(missed.words(), "missed");
         let open = |grade| SpecimenScore { leaves_friction_open: true, ..of(grade, &["hysteresis"]) };
-        let claims = "wrong: claims what kind of friction; damping not told from dry friction, and said so";
+        let claims = "wrong: claims what kind of friction; damping not distinguished from dry friction, and said so";
         assert_eq!(open(Grade::Wrong).words(), claims);
         assert_eq!(open(Grade::Undecidable).words(), "undecidable and said so");
         let wrong = SpecimenScore { wrong: vec!["cogging".to_owned()], ..of(Grade::Wrong, &["cogging"]) };

@@ -23,13 +23,13 @@ pub fn line(recorded: &RecordingScores) -> String {
         ..
     } = recorded;
     let mut text = format!(
-        "Real recordings, {n} specimens: known physics named and nothing else {named} (in {rest_owned} the rest owned as unknown), \
-         owned as unknown {owned}, undecidable and said so {undecidable}, wrong {wrong}, missed {missed}."
+        "Real recordings, {n} specimens: known physics named and nothing else {named} (in {rest_owned} the rest reported as unknown), \
+         reported as unknown {owned}, undecidable and said so {undecidable}, wrong {wrong}, missed {missed}."
     );
     if *held_back > 0 {
         let halved = halved.map_or(String::new(), |halved| format!(" less than half of it in {halved},"));
         text += &format!(
-            " On trials or stretches that did not teach ({held_back} specimens), what belongs to a trial placed, the improved model leaves less \
+            " On held-out trials or stretches ({held_back} specimens), what belongs to a trial placed, the improved model leaves less \
              than the refitted law in {better},{halved} {:.0} % of it in the median.",
             100.0 * left_median
         );
@@ -47,10 +47,10 @@ pub fn section(recorded: &RecordingScores) -> String {
 #[must_use]
 pub fn table(recorded: &RecordingScores) -> String {
     let mut text =
-        "| recording | known | verdict: names | rivals | residual | judgement |\n|---|---|---|---|---|---|\n"
+        "| recording | known | verdict: names | not ruled out | residual | judgement |\n|---|---|---|---|---|---|\n"
             .to_owned();
     recorded.rows.iter().for_each(|row| text += &of(row));
-    text + "\nResiduals are root mean squares, refitted nominal law to improved model (floor): of the trials kept back, or, marked *, of \
+    text + "\nResiduals are root mean squares, refitted nominal law to improved model (expected noise): of the held-out trials, or, marked *, of \
             stretches of the same trial, where it cannot be parted.\n"
 }
 
@@ -69,7 +69,7 @@ fn of(row: &SpecimenScore) -> String {
     )
 }
 
-/// The first of the rivals, and how many more there are.
+/// The first of the alternatives, and how many more there are.
 #[must_use]
 pub fn rivals(row: &SpecimenScore) -> String {
     let first = &row.alternatives[..row.alternatives.len().min(MOST)];

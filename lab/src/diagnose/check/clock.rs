@@ -12,7 +12,7 @@ use crate::rig::Rig;
 pub fn faults(view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
     let rates = two_rates(view);
     let uneven = if rates.is_none() { jitter(view) } else { None };
-    // Rows of a slower stretch are no loss; the change of rate is told by itself.
+    // Rows of a slower stretch are no loss; the change of rate is reported by itself.
     let gaps = if rates.is_none() { gaps(view) } else { None };
     [gaps, rates, uneven, dropouts(view)].into_iter().flatten().collect()
 }
@@ -121,7 +121,7 @@ fn differing(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
     let fast = views.iter().min_by(|a, b| a.recording.period().total_cmp(&b.recording.period()))?;
     let (long, short) = (slow.recording.period(), fast.recording.period());
     let text = format!(
-        "The trials differ in rate: rows {} apart here, {} in {}. All are looked at with the slowest clock; diagnose the fast ones by themselves to \
+        "The trials differ in rate: rows {} apart here, {} in {}. All are analysed at the slowest rate; diagnose the fast ones by themselves to \
          see quick effects.",
         quantity(long, "s"),
         quantity(short, "s"),
@@ -134,7 +134,7 @@ fn differing(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
 fn too_few(views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
     let rows: usize = views.iter().map(|view| view.recording.time.len()).sum();
     let text = format!(
-        "Only {} in all. Few effects can be told from one another, and only strong ones; some hundreds of rows are needed, thousands are better: record \
+        "Only {} in all. Few effects can be distinguished, and only strong ones; some hundreds of rows are needed, thousands are better: record \
          longer or faster.",
         count(rows, "row"),
     );

@@ -45,7 +45,7 @@ pub fn reached(rig: &Rig, views: &[CheckedTrial<'_>]) -> Option<RankedFinding> {
             let was_free = contact.bilateral || views.iter().any(|view| rows(view, free(view)) >= MIN_STATE_ROWS);
             (!was_free).then(|| {
                 let text = "The tool is in contact from the first row to the last: what the force sensor reads when nothing touches, and where the surface \
-                            lies, cannot be told apart. Start and end each trial clear of the surface.";
+                            lies, cannot be distinguished. Start and end each trial clear of the surface.";
                 RankedFinding::mild("never_free", "", 0.0, text)
             })
         }

@@ -72,7 +72,7 @@ impl Motion {
     fn one_depth(&self, length: &str) -> Option<RankedFinding> {
         let (spread, deep) = self.spread()?;
         let text = format!(
-            "Nine in ten rows of contact lie within {} at a depth of {}: whether stiffness or damping change with depth cannot be told. Press to several \
+            "Nine in ten rows of contact lie within {} at a depth of {}: whether stiffness or damping change with depth cannot be decided. Press to several \
              depths, the deepest three times the shallowest.",
             quantity(spread, length),
             quantity(deep, length),
@@ -99,7 +99,7 @@ impl Motion {
                 high - low < STILL * spread
             })
         };
-        let text = "The tool never stays at a depth: whether the force relaxes under a held contact cannot be told from damping and hysteresis. Add a hold of \
+        let text = "The tool never stays at a depth: whether the force relaxes under a held contact cannot be distinguished from damping and hysteresis. Add a hold of \
                     some seconds, as long as the slowest change that matters.";
         (longest > PIECES && !self.stretches.iter().any(|stretch| held(&stretch)))
             .then(|| RankedFinding::mild("no_hold", "motion", 0.0, text))
@@ -118,8 +118,11 @@ fn one_speed(length: &str, inward: &[f64], outward: &[f64], in_contact: bool) ->
     }
     let unit = format!("{length}/s");
     let speeds: Vec<String> = ways.iter().map(|(_, speed)| quantity(*speed, &unit)).collect();
-    let what =
-        if in_contact { "damping cannot be told from hysteresis" } else { "viscous cannot be told from dry friction" };
+    let what = if in_contact {
+        "damping cannot be distinguished from hysteresis"
+    } else {
+        "viscous cannot be distinguished from dry friction"
+    };
     let text = format!(
         "The tool moves at one speed each way ({}): {what}. Run the same way at two more speeds, a factor of three apart.",
         speeds.join(" and "),

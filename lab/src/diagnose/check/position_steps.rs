@@ -60,7 +60,7 @@ pub fn coarse(rig: &Rig, view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
             format!("{}, position", view.name()),
             steps.recip(),
             format!(
-                "The position sensor is coarse for this motion: {} is all the way{where_}, {} times what the sensor tells apart. Move further, or use a \
+                "The position sensor is coarse for this motion: {} is all the way{where_}, {} times what the sensor resolves. Move further, or use a \
                  finer encoder.",
                 quantity(motion, view.length),
                 digits(steps),
@@ -71,7 +71,7 @@ pub fn coarse(rig: &Rig, view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
         let whole = range(values);
         let steps = judge(whole, channel.resolution, channel.noise)?;
         let text = format!(
-            "The force sensor is coarse for this load: {} is all it moves by, {} times what the sensor tells apart. Press harder, or use a more \
+            "The force sensor is coarse for this load: {} is all it moves by, {} times what the sensor resolves. Press harder, or use a more \
              sensitive sensor.",
             quantity(whole, view.push),
             digits(steps),
@@ -84,6 +84,6 @@ pub fn coarse(rig: &Rig, view: &CheckedTrial<'_>) -> Vec<RankedFinding> {
 /// How many steps, or deviations of the noise, a motion has, where they are few.
 fn judge(motion: f64, resolution: f64, noise: f64) -> Option<f64> {
     let steps = motion / resolution.max(noise);
-    // A column that does not move at all, or by its noise only, is told elsewhere.
+    // A column that does not move at all, or by its noise only, is reported elsewhere.
     (motion > 0.0 && steps < COARSE_STEPS && (steps > NOISE_RANGE_SIGMAS || resolution >= noise)).then_some(steps)
 }

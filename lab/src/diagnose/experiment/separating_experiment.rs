@@ -173,11 +173,11 @@ pub fn separated_by(answer: &Term, rival: &Term) -> String {
     }
     let (one, other) = (answer.effect.spec(), rival.effect.spec());
     if one.name == other.name {
-        return format!("Two laws of one effect: {} tells them apart over a wider range.", one.excited_by);
+        return format!("Two laws of one effect: {} distinguishes them over a wider range.", one.excited_by);
     }
     if one.excited_by == other.excited_by {
         return format!(
-            "Both show under {}: only a wider range of it, or another sensor, tells them apart.",
+            "Both show under {}: only a wider range of it, or another sensor, distinguishes them.",
             one.excited_by
         );
     }

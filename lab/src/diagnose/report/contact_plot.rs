@@ -31,7 +31,9 @@ fn depth(outcome: &Outcome, trial: usize) -> Vec<f32> {
 /// One trace a trial.
 pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
     let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
-        let noise = |weight: &f64| if *weight > 0.0 { weight.recip() as f32 } else { outcome.expected_noise as f32 };
+        // By the sensors alone: a weight holds what the refitted law leaves as well.
+        let noise =
+            |variance: &f64| variance.is_finite().then_some(variance.sqrt()).unwrap_or(outcome.expected_noise) as f32;
         Trace {
             trial: trial.name.clone(),
             channel: CHANNEL,
@@ -42,7 +44,7 @@ pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
             refitted: by(outcome, &outcome.residuals[1], at),
             improved: by(outcome, &outcome.residuals[2], at),
             learned: by_learned(outcome, at),
-            expected_noise: outcome.weights[at].iter().map(noise).collect(),
+            expected_noise: outcome.noise[at].iter().map(noise).collect(),
             valid: outcome.weights[at].iter().map(|weight| *weight > 0.0).collect(),
         }
     });

@@ -20,7 +20,7 @@ use crate::effects::{self, Effect as _, LEARNED, Place, slug};
 use crate::page::quantity;
 use crate::rig::{Contact, Coordinate, Rig};
 
-/// Part of the force's range from which a feature of a learned curve is told.
+/// Part of the force's range from which a feature of a learned curve is reported.
 const LEAST_FEATURE: f64 = 0.02;
 
 /// The channel's name in the JSON.
@@ -204,7 +204,7 @@ fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate
     let share = quantity::percent(100.0 * share);
     let left = quantity::rounded(rms(&data(outcome), &curve.residual), force, 3);
     let mut text = format!(
-        " A curve over depth and direction that is learned from the recordings takes {share} of it on rows that taught nothing and leaves {left}"
+        " A curve over depth and direction that is learned from the recordings takes {share} of it on held-out rows and leaves {left}"
     );
     if let Some([from, to, fall]) = shape.softening.filter(|softening| softening[2] > notable) {
         let (fall, between) = (quantity::rounded(fall, force, 2), quantity::between(from, to, length));
@@ -268,7 +268,7 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
             "quantization_limits_residual",
             "position",
             "One step of the position sensor is worth more force in this contact than the force sensor's noise: a residual below the \
-             expected noise is not told from rounding. A finer encoder would show what is below.",
+             expected noise is not distinguished from rounding. A finer encoder would show what is below.",
         );
     }
     let leaves = |trial: &ContactTrial| trial.position.iter().any(|x| *x < model.surface(&outcome.chosen.values, 0));

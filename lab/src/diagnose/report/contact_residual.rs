@@ -55,7 +55,7 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
                 },
                 before: before[number][row].powi(2),
                 after: outcome.residuals[2][number][row].powi(2),
-                noise: outcome.weights[number][row].powi(-2),
+                noise: outcome.noise[number][row],
                 gained: gained(outcome, before, number, row),
             });
         }
@@ -81,7 +81,7 @@ fn pull(trial: &ContactTrial, surface: f64) -> impl Fn(f64) -> bool {
 fn gained(outcome: &Outcome, before: &[Vec<f64>], trial: usize, row: usize) -> f64 {
     let left = match (&outcome.learned, outcome.verdict) {
         (Some(curve), _) => curve.residual[trial][row].powi(2),
-        (None, Verdict::Unknown) => outcome.weights[trial][row].powi(-2),
+        (None, Verdict::Unknown) => outcome.noise[trial][row],
         (None, _) => outcome.residuals[2][trial][row].powi(2),
     };
     before[trial][row].powi(2) - left

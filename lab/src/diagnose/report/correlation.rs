@@ -8,8 +8,8 @@ const STEP: f64 = 1e-3;
 /// Names and values that a report shows, of fitted values.
 pub(super) type Shown<'a> = &'a dyn Fn(&[f64]) -> Vec<(String, f64)>;
 
-/// Correlations of what `shown` makes of the fitted `values`, to first order: J C J' with C their `covariance`. Values that were not fitted are
-/// left out; `None` where fewer than two are left, or the covariance is not known.
+/// Correlations of what `shown` makes of the fitted `values`, to first order: J C J' with C their `covariance`. Values that were not
+/// fitted are left out; `None` where fewer than two are left, or the covariance is not known.
 pub(super) fn correlations(
     channel: &'static str,
     values: &[f64],

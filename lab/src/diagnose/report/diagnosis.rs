@@ -91,7 +91,7 @@ pub struct Alternative {
     pub channel: &'static str,
     /// The measure of [`FitQuality::explained_share`]: of what refitted values leave above the expected noise, the share that it takes.
     pub held_out_gain: f64,
-    /// The experiment that would tell them apart.
+    /// The experiment that would separate them.
     pub separated_by: String,
 }
 
@@ -136,7 +136,7 @@ pub struct FitQuality {
     pub held_out: bool,
     /// Share of the energy above the expected noise, that refitted values leave, which the named physics takes away.
     pub explained_share: f64,
-    /// Up to which frequency the channel was looked at, Hz.
+    /// Up to which frequency the channel was analysed, Hz.
     pub band_hz: f64,
 }
 

@@ -106,7 +106,7 @@ const OTHERWISE: &str = "A longer recording over more of the travel and at more 
 
 /// Stretches in which something else pushes.
 fn outside_forces(outcome: &Outcome) -> Vec<Finding> {
-    let told = |stretch: &Stretch| {
+    let sentence = |stretch: &Stretch| {
         let trial = &outcome.trials[stretch.trial];
         let [from, to] = [stretch.start_s, stretch.end_s].map(|time| time - trial.source_time[0]);
         Finding {
@@ -119,7 +119,7 @@ fn outside_forces(outcome: &Outcome) -> Vec<Finding> {
             ),
         }
     };
-    outcome.outside_forces.iter().map(told).collect()
+    outcome.outside_forces.iter().map(sentence).collect()
 }
 
 fn residuals(outcome: &Outcome) -> Residuals {

@@ -8,7 +8,7 @@ use crate::diagnose::phase::Phase;
 use crate::diagnose::verdict::Verdict;
 use crate::rig::Coordinate;
 
-/// Length of a stretch that is told as a place, s; a shorter trial is one stretch.
+/// Length of a stretch that is reported as a place, s; a shorter trial is one stretch.
 const STRETCH_S: f64 = 1.0;
 
 /// The rows of `outcome`.

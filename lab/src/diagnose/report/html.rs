@@ -26,7 +26,7 @@ const STYLE: &str = include_str!("../../../assets/diagnose.css");
 const SCRIPT: &str = include_str!("../../../assets/diagnose.js");
 
 /// Writes the page. It needs nothing but itself: style, scripts and data are inside, and it forbids the browser to
-/// fetch anything. Long trials are thinned to the rows that a screen can tell apart.
+/// fetch anything. Long trials are thinned to the rows that a screen can resolve.
 ///
 /// # Errors
 /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] where the vectors of a trace, a map or the experiment differ

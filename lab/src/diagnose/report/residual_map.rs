@@ -8,7 +8,7 @@ use crate::diagnose::phase::{self, Phase};
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
-/// Places that are told, and the least share of the channel's energy that is one.
+/// Places that are reported, and the least share of the channel's energy that is one.
 const MOST_PLACES: usize = 4;
 const LEAST_SHARE: f64 = 0.02;
 

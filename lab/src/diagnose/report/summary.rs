@@ -2,6 +2,7 @@
 
 use super::diagnosis::{Diagnosis, FitQuality, Location, Verdict};
 use crate::diagnose::phase;
+use crate::page::effect_name::effect_name;
 use crate::page::quantity;
 use crate::rig::Coordinate;
 
@@ -57,7 +58,7 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
         }
         Verdict::Explained | Verdict::PartlyExplained => {
             let names: Vec<String> =
-                answer.physics.iter().filter(|p| p.name != "unknown").map(|p| p.name.replace('_', " ")).collect();
+                answer.physics.iter().filter(|p| p.name != "unknown").map(|p| effect_name(&p.name)).collect();
             let rest = if answer.verdict == Verdict::PartlyExplained {
                 format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")
             } else if is_noise(fit) {
@@ -71,12 +72,13 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 let all: Vec<String> = answer
                     .alternatives
                     .iter()
-                    .map(|rival| listed(&rival.physics.iter().map(|name| name.replace('_', " ")).collect::<Vec<_>>()))
+                    .map(|rival| listed(&rival.physics.iter().map(|name| effect_name(name)).collect::<Vec<_>>()))
                     .collect();
-                format!(" These data cannot tell it from {}.", all.join(" or "))
+                format!(" These data do not rule out {}.", all.join(" or "))
             };
+            let pronoun = if names.len() == 1 { "it" } else { "them" };
             format!(
-                "The simulation leaves out {}: with it the residual {lacks} falls from {before} to {after} on data that no fit saw.{rest}{rivals}",
+                "The simulation leaves out {}: with {pronoun} the residual {lacks} falls from {before} to {after} on data that no fit saw.{rest}{rivals}",
                 listed(&names)
             )
         }

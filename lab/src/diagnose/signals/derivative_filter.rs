@@ -22,7 +22,7 @@ pub struct DerivativeFilter {
 }
 
 impl DerivativeFilter {
-    /// A Gaussian of `filter_width` seconds over rows of `period` seconds, looked at every `stride` rows.
+    /// A Gaussian of `filter_width` seconds over rows of `period` seconds, evaluated every `stride` rows.
     #[must_use]
     pub fn new(filter_width: f64, period: f64, stride: usize) -> Self {
         let half_width_rows = (HALF_WIDTH_SIGMAS * filter_width / period).ceil().max(1.0) as usize;

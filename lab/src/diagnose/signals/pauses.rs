@@ -21,8 +21,8 @@ pub struct Divided {
     pub finding: Option<Finding>,
 }
 
-/// Divides each of `trials`, and the simulation of it, at its longest gaps until gaps hold no more than [`MAX_GAP_RATIO`] of the time that rows
-/// do. Parts too short to tell anything of are left out where a longer one is left.
+/// Divides each of `trials`, and the simulation of it, at its longest gaps until gaps hold no more than [`MAX_GAP_RATIO`] of the time that
+/// rows do. Parts too short to tell anything of are left out where a longer one is left.
 #[must_use]
 pub fn divided(trials: &[Recording], simulation: &[Recording]) -> Divided {
     let mut divided = Divided { trials: Vec::new(), simulation: Vec::new(), finding: None };

@@ -1,4 +1,4 @@
-//! From recordings to uniform trials: refuses what nothing can be told of, estimates the sensors' noise, sets the rate.
+//! From recordings to uniform trials: refuses what cannot be analysed, estimates the sensors' noise, sets the rate.
 
 use anyhow::{Result, ensure};
 
@@ -23,7 +23,7 @@ pub fn sensed(rig: &Rig, origin: &str, trials: &[Recording]) -> Result<Vec<Unifo
         .collect())
 }
 
-/// `raw` of `trial`, its figures told without a tone of the mains, which is no noise.
+/// `raw` of `trial`, its figures estimated without a tone of the mains, which is no noise.
 fn without_mains_tone(rig: &Rig, raw: UniformTrial, trial: &Recording) -> UniformTrial {
     let Some(tone) = mains_tone::detect(&raw) else { return raw };
     let mut quiet = trial.clone();
@@ -39,7 +39,7 @@ pub fn common_period(trials: &[Recording]) -> f64 {
     trials.iter().map(Recording::period).fold(0.0, f64::max)
 }
 
-/// Refuses trials that nothing can be told of.
+/// Refuses trials that cannot be analysed.
 ///
 /// # Errors
 /// No trial, a trial of a few rows, or none of the rig's channels in them.

@@ -50,7 +50,7 @@ static SPEC: EffectSpec = EffectSpec {
                 Parameter::new("spread", Word::same("1"), "of the yields, in equal ratios", 1.0, 30.0),
             ],
         },
-        // At one speed this is the force of a Maxwell branch: what tells the two apart is another speed, or a hold.
+        // At one speed this is the force of a Maxwell branch: what distinguishes the two is another speed, or a hold.
         Form {
             name: "dahl",
             equation: "F = K x + B v + loop_force z, dz = (1 - z sign(dx)) dx / yield_depth",

@@ -33,7 +33,7 @@ static SPEC: EffectSpec = EffectSpec {
     source: "M. Nordin, P.-O. Gutman, Automatica 38 (2002) 1633",
 };
 
-/// Swings of the flanks, over those of the slowest link that can be told: stiff beside all that a recording shows.
+/// Swings of the flanks, over those of the slowest link that can be identified: stiff beside all that a recording shows.
 const FLANK_RATE_RATIO: f64 = 2.2;
 
 impl Effect for Backlash {

@@ -1,5 +1,6 @@
 //! What changed since an earlier run.
 
+use crate::page::effect_name::effect_name;
 use maud::{Markup, html};
 
 use super::{counted, link};
@@ -66,7 +67,7 @@ fn row(change: &Change) -> Markup {
 }
 
 fn spoken(name: &str) -> String {
-    name.replace('_', " ")
+    effect_name(name)
 }
 
 fn before(change: &ValueChange) -> String {

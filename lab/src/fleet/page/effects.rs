@@ -1,5 +1,6 @@
 //! Which physics the simulations of the fleet leave out, and in how many rigs.
 
+use crate::page::effect_name::effect_name;
 use std::collections::BTreeMap;
 
 use maud::{Markup, html};
@@ -25,7 +26,7 @@ pub(super) fn section(table: &Table) -> Markup {
                 div.wide tabindex="0" role="region" aria-label="Effects by number of rigs" { table.effects {
                     thead { tr { th { "effect" } th { "rigs" } th.bars {} th.text { "which" } } }
                     tbody { @for (name, rigs) in &effects { tr {
-                        th scope="row" { (name.replace('_', " ")) }
+                        th scope="row" { (effect_name(name)) }
                         td { (rigs.len()) }
                         td.bars { span.bar style={ "width: " (format!("{:.1}", 100.0 * rigs.len() as f64 / diagnosed.len() as f64)) "%" } {} }
                         td.text { (some_of(rigs, MAX_NAMES)) }

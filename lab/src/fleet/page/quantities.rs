@@ -23,7 +23,7 @@ pub(super) fn section(quantities: &[Quantity]) -> Markup {
         @if !shown.is_empty() {
             section {
                 h2 { "Values over the fleet" }
-                p { "Each dot is a rig, the line is the median; rigs that stand out are coloured. Values of the rig file are shown as shares of what it states." }
+                p { "Each dot is a rig, the line is the median; a rig whose value stands out is coloured. Values of the rig file are shown as shares of what it states." }
                 div.wide tabindex="0" role="region" aria-label="Values over the fleet" { table.quantities {
                     thead { tr { th { "value" } th { "rigs" } th { "median" } th.dots { "lowest to highest" } th.text { "stands out" } } }
                     tbody { @for quantity in shown { (row(quantity)) } }

@@ -1,5 +1,6 @@
 //! Every rig with its answer.
 
+use crate::page::effect_name::effect_name;
 use maud::{Markup, html};
 
 use super::changes::with_interval;
@@ -32,7 +33,7 @@ fn row(rig: Rig<'_>) -> Markup {
                 th scope="row" { (link(rig.name())) }
                 td.text { (head.verdict.replace('_', " ")) }
                 td.text { @for name in rig.effects() { (effect(rig, name)) } }
-                td.text { (head.alternatives.replace('_', " ")) }
+                td.text { (effect_name(&head.alternatives)) }
                 td { (head.residual_over_noise.map_or("–".to_owned(), |ratio| rounded(ratio, "1", 3))) }
             }
         }
@@ -42,7 +43,7 @@ fn row(rig: Rig<'_>) -> Markup {
 fn effect(rig: Rig<'_>, name: &str) -> Markup {
     let values: Vec<&Row> = rig.effect_values().filter(|row| row.effect == name).collect();
     html! {
-        div { (name.replace('_', " ")) @for row in values { small { (row.parameter.replace('_', " ")) " " (value(row)) } } }
+        div { (effect_name(name)) @for row in values { small { (row.parameter.replace('_', " ")) " " (value(row)) } } }
     }
 }
 

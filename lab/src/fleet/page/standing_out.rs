@@ -1,5 +1,6 @@
 //! Which rigs stand out of the fleet, and why.
 
+use crate::page::effect_name::effect_name;
 use maud::{Markup, html};
 
 use super::link;
@@ -41,10 +42,10 @@ fn words(reason: &Reason) -> Markup {
         Reason::Failed(error) => html! { strong.missed { "failed" } ": " (error) },
         Reason::Unknown => html! { "structure that no effect on the list explains" },
         Reason::RareEffect(name, count, of) => {
-            html! { strong { (name.replace('_', " ")) } ", which " (count) " of " (of) " have" }
+            html! { strong { (effect_name(name)) } ", which " (count) " of " (of) " have" }
         }
         Reason::LacksEffect(name, count, of) => {
-            html! { "no " strong { (name.replace('_', " ")) } ", which " (count) " of " (of) " have" }
+            html! { "no " strong { (effect_name(name)) } ", which " (count) " of " (of) " have" }
         }
         Reason::Value(far) => value(far),
     }

@@ -1,5 +1,6 @@
 //! How the intervals of the last answer's values shrank.
 
+use crate::page::effect_name::effect_name;
 use maud::{Markup, html};
 
 use crate::investigate::record::{Round, ValueState};
@@ -40,7 +41,7 @@ fn figure(history: &[(u64, ValueState)]) -> Markup {
     let Some((_, last)) = history.last() else { return html! {} };
     html! {
         figure {
-            figcaption { (last.name.replace('_', " ")) " of " (last.effect.replace('_', " ")) ": " (plain(low, &last.unit)) " to " (plain(high, &last.unit)) }
+            figcaption { (last.name.replace('_', " ")) " of " (effect_name(&last.effect)) ": " (plain(low, &last.unit)) " to " (plain(high, &last.unit)) }
             @for (number, value) in history {
                 div.interval-row {
                     span { "round " (number) }

@@ -73,7 +73,7 @@ pub(super) fn figure(
     };
     html! {
         figure {
-            p.key-line { span.commanded { "commanded" } ", " span.recorded { "recorded" } " position; dashed: limits, dotted: surface of the rig file" }
+            p.key-line { span.commanded { "commanded" } ", " span.recorded { "recorded" } " position; dashed: limits of the recorded position (a command may lie beyond them where the contact holds the tool back), dotted: surface of the rig file" }
             svg role="img" aria-label="Commanded and recorded position over time" height=(HEIGHT)
                 viewBox={ "0 -2 " (GRID.0) " " (GRID.1 + 4.0) } preserveAspectRatio="none" {
                 @for limit in limits.position { (line("limit", limit)) }

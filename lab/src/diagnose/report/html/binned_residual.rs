@@ -67,11 +67,11 @@ fn most(map: &BinnedResidual) -> String {
 }
 
 fn label(map: &BinnedResidual, improved: bool) -> String {
-    let bins = (0..map.labels.len()).map(|bin| told(map, bin, improved));
+    let bins = (0..map.labels.len()).map(|bin| bin_label(map, bin, improved));
     format!("{}, residual power over the noise. {}.", title(map), bins.collect::<Vec<_>>().join("; "))
 }
 
-fn told(map: &BinnedResidual, bin: usize, improved: bool) -> String {
+fn bin_label(map: &BinnedResidual, bin: usize, improved: bool) -> String {
     let after = if improved { format!(", {} after", times(map.after[bin])) } else { String::new() };
     format!(
         "{}: {} times noise before{after}, {} of what is missing",
@@ -146,7 +146,7 @@ fn column(map: &BinnedResidual, scale: &Scale, bin: usize, improved: bool) -> Ma
     let top = scale.y(map.before[bin]).unwrap_or(BOTTOM);
     html! {
         g {
-            title { (told(map, bin, improved)) }
+            title { (bin_label(map, bin, improved)) }
             (pillar("refitted", start, each, scale.y(map.before[bin])))
             @if improved { (pillar("improved", start + each, each, scale.y(map.after[bin]))) }
             @if is_labelled(map, bin) {

@@ -32,7 +32,7 @@ fn card(physics: &Physics, only: bool) -> Markup {
             @if !physics.equation.is_empty() { p.equation { (physics.equation) } }
             @if !physics.parameters.is_empty() {
                 dl.values { @for value in &physics.parameters { (parameter(&physics.name, value)) } }
-                p.fine { "± and ranges span 95 %, widened by what the law leaves and by what the halves of the recordings disagree about." }
+                p.fine { "± and ranges span 95 %, widened for the residual that remains and for the disagreement between halves of the recordings." }
             }
             @if !unknown { p.fine { (evidence(physics, only)) } }
             @if let Some(regressor) = &physics.on_drive {
@@ -70,7 +70,7 @@ fn meaning(effect: &str, parameter: &str) -> Option<&'static str> {
 fn evidence(physics: &Physics, only: bool) -> Markup {
     let evidence = physics.evidence;
     html! {
-        "On data that no fit saw, it takes away " (gain(evidence.held_out_gain)) " of what the law without it leaves above the noise"
+        "On data that no fit saw, it takes away " (gain(evidence.held_out_gain)) " of the mean square that the law without it leaves above the noise"
         @if !only { ", the other named effects in place" }
         "; " (odds(evidence.p_value)) "."
     }

@@ -15,7 +15,7 @@ pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
         section #evidence aria-labelledby="evidence-title" {
             h2 #evidence-title { "The answer, and what else would do" }
             p.fine {
-                "Takes away: of what refitted values leave in the channel above the sensors' noise, the share that is gone with these effects, on stretches of the recordings that no fit saw."
+                "Takes away: of the mean square that refitted values leave in the channel above the sensors' noise, the share that these effects explain, on held-out stretches of the recordings."
             }
             @for fit in explained { (table(answer, fit)) }
             @if let Some(next) = &pictures.experiment { (experiment::figure(next, pictures)) }
@@ -34,7 +34,7 @@ fn table(answer: &Diagnosis, fit: &FitQuality) -> Markup {
     html! {
         div.wide tabindex="0" role="region" aria-label={ "Explanations of the " (channel(fit.channel)) } {
             table.rivals {
-                thead { tr { th scope="col" { (heading(channel(fit.channel))) } th scope="col" { "Takes away" } th scope="col" { "What would tell it from the answer" } } }
+                thead { tr { th scope="col" { (heading(channel(fit.channel))) } th scope="col" { "Takes away" } th scope="col" { "What would separate it from the answer" } } }
                 tbody {
                     tr.best { th scope="row" { (list(&named(answer, fit.channel))) " " span.mark { "answer" } } td { (gain(fit.explained_share)) } td { "–" } }
                     @for other in &others { (row(other)) }

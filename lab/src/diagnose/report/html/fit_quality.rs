@@ -32,9 +32,9 @@ pub(super) fn section(answer: &Diagnosis) -> Markup {
 fn figure(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     let bars = bars(answer, goodness);
     let axis = Axis::over(bars.iter().map(|bar| bar.value));
-    let told: Vec<String> =
+    let described: Vec<String> =
         bars.iter().map(|bar| format!("{}: {}", bar.name, plain(bar.value, goodness.unit))).collect();
-    let label = format!("Typical error of the {}. {}.", channel(goodness.channel), told.join("; "));
+    let label = format!("Typical error of the {}. {}.", channel(goodness.channel), described.join("; "));
     html! {
         figure {
             figcaption {
@@ -98,7 +98,7 @@ fn analysed(goodness: &FitQuality) -> String {
 }
 
 /// Whether refitted values alone leave what the sensors do.
-fn is_told_by_noise(goodness: &FitQuality) -> bool {
+fn is_within_noise(goodness: &FitQuality) -> bool {
     goodness.refitted < MOST_OVER_NOISE * goodness.noise_floor
 }
 
@@ -107,10 +107,10 @@ fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     let name = channel(goodness.channel);
     let is_named = answer.physics.iter().any(|one| one.name != "unknown" && one.channel == goodness.channel);
     html! {
-        @if !is_named && is_told_by_noise(goodness) {
+        @if !is_named && is_within_noise(goodness) {
             "Refitted values leave no more in the " (name) " than the expected noise: nothing is missing there."
         } @else if names_physics(answer) {
-            "Of what refitted values leave in the " (name) " above the noise, the named physics takes away "
+            "Of the mean square that refitted values leave in the " (name) " above the noise, the named physics takes away "
             strong { (share(goodness.explained_share)) } "."
         } @else if answer.verdict == Verdict::Unknown {
             "Refitted values still leave " strong { (left) } " in the " (name) ", and no effect that was tried takes that away."

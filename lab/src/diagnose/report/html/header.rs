@@ -50,11 +50,11 @@ fn meaning(answer: &Diagnosis) -> Markup {
             "With the physics below added, what is left between simulation and recordings is the sensors' own noise."
         },
         Verdict::Explained => html! {
-            "The physics below takes away " (share(fit.explained_share)) " of what refitted values leave in the " (channel(fit.channel))
+            "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
             " above the noise. What stays, " (rounded(fit.improved, fit.unit, 3)) ", is " (multiple(fit.improved / fit.noise_floor)) ": the real laws are not quite those that are named."
         },
         Verdict::PartlyExplained => html! {
-            "The physics below takes away " (share(fit.explained_share)) " of what refitted values leave in the " (channel(fit.channel))
+            "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
             " above the noise. The rest is more than noise, and no effect of the list explains it."
         },
         Verdict::Unknown => unknown(answer),

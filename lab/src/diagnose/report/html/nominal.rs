@@ -59,7 +59,9 @@ fn is_stated(value: &Nominal) -> bool {
 }
 
 fn row(value: &Nominal) -> Markup {
-    let differs = difference(value.fitted, value.given);
+    // A position has no natural zero: its ratio to another says nothing.
+    let is_position = value.name.starts_with("surface");
+    let differs = if is_position { String::new() } else { difference(value.fitted, value.given) };
     html! {
         tr {
             th scope="row" { code { (value.name) } }

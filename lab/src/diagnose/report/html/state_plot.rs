@@ -42,7 +42,7 @@ fn figure(plot: &StatePlot, all: &[Line]) -> Markup {
     let names: Vec<&str> = lines.iter().map(|line| line.name.as_str()).collect();
     html! {
         figure.state {
-            figcaption { h3 { (title) } p { (plot.trial) ", " (time) ". Points are measured; simulations on rows that taught them nothing." } }
+            figcaption { h3 { (title) } p { (plot.trial) ", " (time) ". Points are measured; lines are simulated on held-out rows." } }
             p.keys {
                 span { span.key.dot {} "measured" }
                 @for line in &lines { span { span.stroke.(line.key) {} (line.name) } }

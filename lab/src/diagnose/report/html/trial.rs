@@ -122,10 +122,10 @@ pub(super) fn templates(answer: &Diagnosis) -> Markup {
 fn left(answer: &Diagnosis) -> &'static str {
     match answer.verdict {
         Verdict::NoMismatch => {
-            "Measured minus simulated. The grey band is ± 2 deviations of the sensors' noise: nothing leaves it for long."
+            "Measured minus simulated. The grey band is ± 2 standard deviations of the expected noise: nothing leaves it for long."
         }
         _ => {
-            "Measured minus simulated. The grey band is ± 2 deviations of the sensors' noise: a good simulation stays within."
+            "Measured minus simulated. The grey band is ± 2 standard deviations of the expected noise: a good simulation stays within."
         }
     }
 }

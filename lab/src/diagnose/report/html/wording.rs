@@ -2,12 +2,13 @@
 
 use super::super::diagnosis::{Diagnosis, Location, Phase};
 use super::super::summary::MOST;
+use crate::page::effect_name::effect_name;
 use crate::page::quantity::{between, percent, plain, rounded, with_interval};
 use maud::{Markup, html};
 
-/// "hunt crossley damping".
+/// "Hunt-Crossley damping".
 pub(super) fn title(name: &str) -> String {
-    name.replace('_', " ")
+    effect_name(name)
 }
 
 /// The same as a heading.
@@ -102,9 +103,9 @@ pub(super) fn phase(phase: Phase) -> &'static str {
     }
 }
 
-/// "at onset, trial-1.csv, 2.31 to 2.35 s, x 0-2 mm".
+/// "at onset, as the contact begins, in trial-1.csv, 2.31 to 2.35 s, x 0-2 mm".
 pub(super) fn location(location: &Location) -> Markup {
-    html! { (place_words(location)) span.file { (location.trial) "," } " " (stretch(location)) }
+    html! { (place_words(location)) "in " span.file { (location.trial) "," } " " (stretch(location)) }
 }
 
 /// "at onset, as the contact begins, "; nothing of a drive without contact.
