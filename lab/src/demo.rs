@@ -135,14 +135,14 @@ fn show(device: Option<&Runner>, rig_path: &Path, trial: &Path, out: &Path) -> R
     let device = device.map(run).transpose()?;
     print_side_by_side(&rig, &host, device.as_ref())?;
     host.notices().iter().for_each(|notice| println!("   note: {notice}"));
-    outputs.write(&rig, &[host], &options, Place::Host)?;
+    outputs.write(&rig, vec![host], &options, Place::Host)?;
     Ok(out.join("replay.html"))
 }
 
 fn print_side_by_side(rig: &Rig, host: &Replayed, device: Option<&Replayed>) -> Result<()> {
     let (k, b) = (rig.coordinate.stiffness_unit(), rig.coordinate.damping_unit());
     println!(
-        "   {:<8} {:>26} {:>26}   device",
+        "   {:<9} {:>26} {:>26}   device",
         "method",
         format!("K on the host [{k}]"),
         format!("B on the host [{b}]")
@@ -158,7 +158,7 @@ fn print_side_by_side(rig: &Rig, host: &Replayed, device: Option<&Replayed>) -> 
                 crate::replay::interval(s.damping, s.damping_half_width),
             )
         });
-        println!("   {:<8} {k:>26} {b:>26}   {verdict}", method.name());
+        println!("   {:<9} {k:>26} {b:>26}   {verdict}", method.name());
     }
     Ok(())
 }

@@ -96,7 +96,7 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     }
     table::print(&rig, &replayed)?;
     if let (Some(outputs), Some(folder)) = (outputs, &args.out) {
-        outputs.write(&rig, &replayed, &args.options, args.on)?;
+        outputs.write(&rig, replayed, &args.options, args.on)?;
         println!("{}", folder.join("replay.html").display());
     }
     Ok(())

@@ -58,8 +58,8 @@ impl Outputs {
     ///
     /// # Errors
     /// The place cannot be written any more.
-    pub fn write(mut self, rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Result<()> {
-        for (file, replayed) in self.estimates.into_iter().zip(replayed) {
+    pub fn write(mut self, rig: &Rig, replayed: Vec<Replayed>, options: &Options, place: Place) -> Result<()> {
+        for (file, replayed) in self.estimates.into_iter().zip(&replayed) {
             estimates::write(file, rig.coordinate, replayed)?;
         }
         let diagnosis = neighbour::beside(&self.folder.join(REPLAY_PAGE), &DIAGNOSIS_PAGES, "palpate diagnose");
@@ -69,7 +69,7 @@ impl Outputs {
     }
 }
 
-fn page(rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Page {
+fn page(rig: &Rig, replayed: Vec<Replayed>, options: &Options, place: Place) -> Page {
     let (stiffness, damping) = rig.contact.map_or((f64::NAN, f64::NAN), |c| (c.stiffness, c.damping));
     Page {
         rig: rig.name.clone(),
@@ -79,21 +79,24 @@ fn page(rig: &Rig, replayed: &[Replayed], options: &Options, place: Place) -> Pa
         },
         settings: options.in_words(),
         diagnosis: None,
-        trials: replayed
-            .iter()
-            .map(|r| Trial {
-                name: r.recording.name.clone(),
-                units: units(rig.coordinate),
-                nominal_stiffness: stiffness,
-                nominal_damping: damping,
-                time: r.recording.time.clone(),
-                penetration: r.plan.samples.iter().map(|sample| sample.position).collect(),
-                force: r.plan.samples.iter().map(|sample| sample.force).collect(),
-                contact: r.trace.contact(),
-                methods: r.trace.methods(&r.plan.samples),
-                notices: r.notices(),
-            })
-            .collect(),
+        trials: replayed.into_iter().map(|one| trial(one, units(rig.coordinate), stiffness, damping)).collect(),
+    }
+}
+
+fn trial(replayed: Replayed, units: Units, nominal_stiffness: f64, nominal_damping: f64) -> Trial {
+    let (notices, contact) = (replayed.notices(), replayed.trace.contact());
+    let Replayed { recording, plan, trace } = replayed;
+    Trial {
+        name: recording.name,
+        units,
+        nominal_stiffness,
+        nominal_damping,
+        time: recording.time,
+        contact,
+        methods: trace.into_methods(&plan.samples),
+        penetration: plan.samples.iter().map(|sample| sample.position).collect(),
+        force: plan.samples.iter().map(|sample| sample.force).collect(),
+        notices,
     }
 }
 

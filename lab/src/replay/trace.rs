@@ -101,11 +101,12 @@ impl Trace {
         self.columns.iter().map(|(method, estimates)| (*method, summary(estimates, samples))).collect()
     }
 
-    /// The traces as the page shows them, for the samples that were fed.
+    /// The traces as the page shows them, for the samples that were fed. The estimates of a method are dropped before the next
+    /// method is converted: a long recording is not held twice.
     #[must_use]
-    pub fn methods(&self, samples: &[Sample]) -> Vec<page::Method> {
+    pub fn into_methods(self, samples: &[Sample]) -> Vec<page::Method> {
         self.columns
-            .iter()
+            .into_iter()
             .map(|(method, estimates)| {
                 let column = |value: fn(&Estimate) -> f32| estimates.iter().map(value).collect();
                 page::Method {
@@ -116,7 +117,7 @@ impl Trace {
                     damping: column(|e| e.impedance.damping),
                     damping_half_width: column(|e| e.half_width.damping),
                     innovation: column(|e| e.innovation),
-                    summary: summary(estimates, samples),
+                    summary: summary(&estimates, samples),
                 }
             })
             .collect()
