@@ -19,7 +19,7 @@ mod reading;
 mod resolved;
 mod sensor;
 
-pub use contact::learned::LEARNED_KNOTS;
+pub use contact::learned::{LEARNED_FORM, LEARNED_KNOTS};
 pub use contact_simulator::{ActiveEffect, ContactSimulator};
 pub use contact_state::{ContactState, gate, ramp, rounded};
 pub use drive_state::DriveState;

@@ -14,6 +14,7 @@ pub mod prepare;
 pub mod projection;
 pub mod scales;
 pub mod selection;
+pub mod spline;
 #[cfg(test)]
 pub mod testing;
 pub mod tones;

@@ -1,7 +1,7 @@
 //! What a law leaves of rows that its values were not fitted to.
 
 use super::fit::{Data, Effort, Fit};
-use super::model::index;
+use super::model::{ContactModel, index};
 
 /// Two halves of the rows: every other trial, or every other block of a single one. Each is fitted once and judged once.
 pub struct Folds {
@@ -57,18 +57,24 @@ impl Folds {
     /// fitted to that trial; nothing else is.
     #[must_use]
     pub fn held_out(&self, data: &Data<'_>, fit: &Fit) -> HeldOut {
-        self.held_out_holding(data, fit, &|_| false)
+        let taught = [0, 1].map(|half| self.masked(data, half).fit(&fit.model, &fit.values, STEPS).values);
+        self.judged(data, &fit.model, taught)
     }
 
-    /// The same where the values that `held` names stay as they are in either half.
+    /// Whether each row, trial after trial, belongs to the first half.
     #[must_use]
-    pub fn held_out_holding(&self, data: &Data<'_>, fit: &Fit, held: &dyn Fn(usize) -> bool) -> HeldOut {
+    pub fn is_first(&self) -> Vec<bool> {
+        self.halves[0].concat()
+    }
+
+    /// What `model` leaves of each half with the values that the other half gave, `taught`.
+    #[must_use]
+    pub fn judged(&self, data: &Data<'_>, model: &ContactModel, taught: [Vec<f64>; 2]) -> HeldOut {
         let mut residual: Vec<Vec<f64>> = data.trials.iter().map(|trial| vec![0.0; trial.len()]).collect();
         let mut energy = 0.0;
-        let model = &fit.model;
-        let has_own = (0..fit.values.len()).any(|at| model.owner(at).is_some());
+        let has_own = (0..taught[0].len()).any(|at| model.owner(at).is_some());
         let values = [0, 1].map(|half| {
-            let taught = self.masked(data, half).fit_holding(model, &fit.values, STEPS, held).values;
+            let taught = taught[half].clone();
             let unseen = self.masked(data, 1 - half);
             let placed = if has_own && data.trials.len() > 1 {
                 let is_shared = |at: usize| model.owner(at).is_none() && !(model.own.surface && at == index::SURFACE);

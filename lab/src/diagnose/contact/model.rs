@@ -4,7 +4,7 @@ use super::scales::Scales;
 use super::trial::ContactTrial;
 use crate::diagnose::term::Term;
 use crate::effects::contact_simulator::{ActiveEffect, ContactSimulator};
-use crate::effects::{Limit, Parameter, Place, Reading};
+use crate::effects::{Limit, Parameter, Place, Reading, Stage};
 use crate::rig::Contact;
 
 /// Places of the nominal values.
@@ -88,6 +88,10 @@ const SURFACE_PRIOR: f64 = 0.3;
 
 /// Deviation of a trial's own zero, of the greatest force.
 const ZERO_PRIOR: f64 = 0.1;
+
+/// Part of the force's range from which a spring's force falls, and points of the way that it is looked at in.
+const LEAST_FALL: f64 = 0.02;
+const PATH_POINTS: usize = 60;
 
 /// Deviation of the logarithm of a trial's own factor: spots of one body differ by factors of 1.2 to 1.7.
 const SCALE_PRIOR: f64 = 0.4;
@@ -227,13 +231,53 @@ impl ContactModel {
             }
             Limit::RepeatedCycles => low = low.max(1.8 / scales.duration_s),
             Limit::ResolvableLength => low = low.max(scales.resolution),
-            Limit::VisitedDepth => high = high.min(scales.depth),
+            Limit::VisitedDepth => high = high.min(self.longest_way()),
             Limit::BoundsOnly => {}
         }
         let by_factors = parameter.low >= 0.0 && parameter.high.is_infinite() && value > 0.0;
         let size = if value == 0.0 { 1e-3 } else { value.abs() };
         let prior = None;
         Range { low, high, size, by_factors, free: !parameter.fixed, prior }
+    }
+
+    /// Longest way between two reversals that the recordings can hold, m or rad: a clamped tool goes to and fro on both sides of the
+    /// surface, another one from there inwards.
+    fn longest_way(&self) -> f64 {
+        if self.bilateral { self.scales.travel() } else { self.scales.depth }
+    }
+
+    /// Whether the spring's force falls on the way in, by more than [`LEAST_FALL`] of its range: as over a click, or where a column
+    /// buckles. A spring that hardens, softens or lies on another does not.
+    #[must_use]
+    pub fn has_falling_spring(&self, values: &[f64]) -> bool {
+        let all = self.acting(Place::Contact, values, 0);
+        let held: Vec<ActiveEffect<'_>> =
+            all.iter().map(active).filter(|active| active.stage() == Stage::Law).collect();
+        if held.is_empty() {
+            return false;
+        }
+        let contact =
+            Contact { surface: 0.0, stiffness: values[index::STIFFNESS], damping: 0.0, bilateral: self.bilateral };
+        let mut law = ContactSimulator::new(contact, &held);
+        let depth = self.scales.positions[1] - values[index::SURFACE];
+        let (mut highest, mut fall) = (0.0f64, 0.0f64);
+        for point in 0..PATH_POINTS {
+            let position = depth * point as f64 / (PATH_POINTS - 1) as f64;
+            let force = law.step(point as f64, 1.0, position, 0.0, 0.0, 0.0);
+            highest = highest.max(force);
+            fall = fall.max(highest - force);
+        }
+        fall > LEAST_FALL * highest
+    }
+
+    /// Frequencies of the waves that its effects hold, Hz.
+    #[must_use]
+    pub fn frequencies(&self, values: &[f64]) -> Vec<f64> {
+        let all = self.terms.iter().enumerate().flat_map(|(nth, term)| {
+            let own = values[self.first_value_of(nth)..].iter().zip(term.parameters());
+            own.filter(|(_, parameter)| parameter.limit == Limit::RepeatedCycles).map(|(value, _)| *value)
+        });
+        all.collect()
     }
 
     /// Whether a value of an effect ended at an end of what the recordings can show.
@@ -339,5 +383,51 @@ fn shift(force: &mut [f64], late: f64, step: f64) {
         let after = force.get(row + 1).copied().unwrap_or(here);
         force[row] = here - part * (after - before);
         before = here;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::Data;
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::TestContact;
+    use super::*;
+    use crate::effects;
+
+    /// The law of the test's contact with `name` by its form `form`, and its values with `own` for the effect.
+    fn law(name: &str, form: usize, own: &[f64]) -> (ContactModel, Vec<f64>) {
+        let trials = [TestContact::PLAIN.trial(1)];
+        let plain = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        let model = plain.model.with(Term { effect: effects::find(name).unwrap(), form });
+        (model, plain.values.iter().chain(own).copied().collect())
+    }
+
+    #[test]
+    fn a_loop_yields_within_the_depth_that_was_visited() {
+        let (model, values) = law("hysteresis", 3, &[1.0, 1e-3]);
+        let yields = model.first_value_of(0) + 1;
+        let deepest = model.ranges(&values)[yields].high;
+        // Ten millimetres deep at the most.
+        assert!((deepest - model.scales.depth).abs() < 1e-12 && (5e-3..11e-3).contains(&deepest), "{deepest}");
+        let with = |value: f64| {
+            let mut values = values.clone();
+            values[yields] = value;
+            model.is_at_end(&values)
+        };
+        assert!(!with(0.5 * deepest) && with(deepest), "a search that ends at the bound is refused");
+        // A clamped tool goes to and fro on both sides: its longest way is the whole travel, however far away its preload lies.
+        let clamped = ContactModel { bilateral: true, ..model };
+        assert_eq!(clamped.ranges(&values)[yields].high, clamped.scales.travel());
+    }
+
+    #[test]
+    fn a_spring_that_falls_on_the_way_in_is_told_from_one_that_softens() {
+        // 300 N/m, by 250 N/m less from 4 mm on, and by 500 N/m less: there the force falls.
+        let falls = |added: f64| {
+            let (model, values) = law("layered_stiffness", 0, &[added, 4e-3]);
+            model.has_falling_spring(&values)
+        };
+        assert!(!falls(-250.0) && falls(-500.0));
+        assert!(!falls(900.0));
     }
 }

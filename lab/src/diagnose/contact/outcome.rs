@@ -54,7 +54,7 @@ pub struct Outcome {
     pub named: Vec<NamedTerm>,
     /// What else would do.
     pub alternatives: Vec<Alternative>,
-    /// For what is left beside what is named: a learned element, where unseen rows pay for one.
+    /// For what is left beside what is named, where that is notable: a learned element, where unseen rows pay for one.
     pub learned: Option<LearnedCurve>,
     /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects, on rows that no fit saw, a
     /// column a trial.
@@ -133,8 +133,8 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     };
     let given_residual = columns(&given);
     let verdict = verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
-    let is_left = matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained);
-    let learned = if is_left { learned(data, &fit) } else { None };
+    // Beside names that stand for the mismatch, too: what a textbook's law leaves of a real thing is no less of use for being told.
+    let learned = if is_notable(search, &fit, &rest) { learned(data, &fit) } else { None };
     let spread = intervals(data, &fit, &rest, &improved.values);
     Outcome {
         trials: Vec::new(),
@@ -252,14 +252,19 @@ fn takes_too_little(search: &Search<'_>, fit: &Fit, named: &[NamedTerm]) -> bool
     !named.is_empty() && Rest::of(&search.data, fit).over_sensors > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
 }
 
+/// Whether what `fit` leaves, `rest`, is more than the sensors may leave, and a part of the force that is of interest.
+fn is_notable(search: &Search<'_>, fit: &Fit, rest: &Rest) -> bool {
+    let left = fit.energy - search.data.expected();
+    rest.over_sensors > NOTABLE_POWER && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE)
+}
+
 fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Verdict {
     let data = &search.data;
     let expected = data.expected();
     let rest = Rest::of(data, fit);
     let left = (fit.energy - expected).max(0.0);
     let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
-    let is_notable = rest.over_sensors > NOTABLE_POWER
-        && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE);
+    let is_notable = is_notable(search, fit, &rest);
     if named.is_empty() {
         let refitted = rms(data, &held[0].residual);
         return if is_notable {

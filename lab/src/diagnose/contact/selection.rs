@@ -10,6 +10,7 @@ use super::fit::{Data, Effort, Fit, Rest};
 use super::model::{ContactModel, index};
 use super::own_values::{fewer_own_values, moved_values, own_values};
 use super::projection::{Projection, Promise};
+use super::tones::is_in_step;
 use crate::diagnose::model_comparison::vuong;
 
 /// What a search works on.
@@ -128,6 +129,16 @@ impl Search<'_> {
             && (worth.vuong > LEAST_VUONG || (worth.share > LEAST_TOLD_SHARE && worth.left_before > FAR_FROM_NOISE))
     }
 
+    /// Whether `fit` is a law that its effects stand for: no value at the end of what the recordings show, no wave that has slid into step
+    /// with the motion, and no spring whose force falls on the way in, unless the rig file has one.
+    fn is_admissible(&self, fit: &Fit) -> bool {
+        let falls = |fit: &Fit| fit.model.has_falling_spring(&fit.values);
+        let mut frequencies = fit.model.frequencies(&fit.values).into_iter();
+        !fit.model.is_at_end(&fit.values)
+            && !frequencies.any(|frequency| is_in_step(&self.coarse, frequency))
+            && (!falls(fit) || falls(&self.nominal))
+    }
+
     /// What a value more has to gain, nats: half the logarithm of the rows that tell more than one (G. Schwarz, Ann. Stat. 6 (1978) 461).
     fn price_of_value(&self, rest: &Rest) -> f64 {
         0.5 * (self.data.rows() as f64 / rest.correlated_rows).max(1.0).ln()
@@ -152,7 +163,7 @@ impl Search<'_> {
                 let quick = self.grown(base);
                 grown.extend(self.polished(quick));
             }
-            grown.retain(|fit| !fit.model.is_at_end(&fit.values));
+            grown.retain(|fit| self.is_admissible(fit));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             let Some(least) = grown.first() else { break };
             let rest = Rest::of(&self.data, least);
@@ -300,7 +311,7 @@ impl Search<'_> {
             for at in first..best.model.terms.len() {
                 let less = self.without(&best, at);
                 for fit in self.polished(self.grown(&less)) {
-                    let is_open = !fit.model.is_at_end(&fit.values) && fit.model.terms.len() <= best.model.terms.len();
+                    let is_open = self.is_admissible(&fit) && fit.model.terms.len() <= best.model.terms.len();
                     let price = self.price(&fit, &rest);
                     if is_open
                         && price < own - LEAST_GAIN

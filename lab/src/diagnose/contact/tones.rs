@@ -23,12 +23,18 @@ pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f
         let level = |at: Option<usize>| at.and_then(|at| power.get(at)).copied().unwrap_or(f64::NEG_INFINITY);
         let peaks = (0..count).filter(|at| power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1)));
         // A wave in step with the motion itself is not told from a law of the motion.
-        let is_motion = |at: &usize| own.power(frequencies[*at]) > LARGEST_OWN_SHARE * own.energy();
+        let is_motion = |at: &usize| own.is_loud_at(frequencies[*at]);
         heard.extend(peaks.filter(|at| !is_motion(at)).map(|at| (power[at], frequencies[at])));
     }
     heard.sort_by(|a, b| b.0.total_cmp(&a.0));
     heard.truncate(MOST_FREQUENCIES);
     heard.iter().map(|(_, frequency)| search.start(*frequency)).collect()
+}
+
+/// Whether the motion of `data` goes to and fro with `frequency`, Hz, itself.
+#[must_use]
+pub fn is_in_step(data: &Data<'_>, frequency: f64) -> bool {
+    Rows::of_motion(data).is_loud_at(frequency)
 }
 
 /// Time, weight and residual of each row that counts, a list a trial: each has a phase of its own.
@@ -63,6 +69,11 @@ impl Rows {
         Self(data.trials.iter().map(trial).collect())
     }
 
+    /// Whether more than [`LARGEST_OWN_SHARE`] of the squares lie at `frequency`.
+    fn is_loud_at(&self, frequency: f64) -> bool {
+        self.power(frequency) > LARGEST_OWN_SHARE * self.energy()
+    }
+
     /// Sum of squares.
     fn energy(&self) -> f64 {
         self.0.iter().flatten().map(|(_, _, rest)| rest * rest).sum()
@@ -82,5 +93,20 @@ impl Rows {
             2.0 * (sine * sine + cosine * cosine) / f64::max(weight, f64::MIN_POSITIVE)
         };
         self.0.iter().map(trial).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::TestContact;
+    use super::*;
+
+    #[test]
+    fn a_wave_at_the_frequency_of_the_strokes_is_in_step_with_them() {
+        let trials = [TestContact::PLAIN.trial(1)];
+        let data = Data::new(&trials);
+        // Strokes of 4 rad/s, their depth modulated with 1.1 rad/s; no motion at 3 Hz.
+        assert!(is_in_step(&data, 4.0 / std::f64::consts::TAU));
+        assert!(!is_in_step(&data, 3.0));
     }
 }

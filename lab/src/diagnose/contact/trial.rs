@@ -36,6 +36,8 @@ pub struct ContactTrial {
     pub force_variance: f64,
     /// Whether a row is a measurement.
     pub counts: Vec<bool>,
+    /// Number of the encoder's step that each row was read in; empty where the reading is continuous.
+    pub encoder_steps: Vec<i64>,
     /// What the sensors leave.
     pub figures: Figures,
 }
@@ -52,6 +54,7 @@ impl ContactTrial {
         }
         let origin = recording.time.first().copied()?;
         let since: Vec<f64> = recording.time.iter().map(|time| time - origin).collect();
+        let encoder_steps = encoder_steps(&position, figures.position.resolution, every.max(1));
         let noise = figures.position.noise.max(figures.position.resolution / 12f64.sqrt());
         let mut smooth = motion::smoothed(&since, &position, noise * noise);
         stuck_rounding(&mut smooth, figures.position, recording.period());
@@ -79,6 +82,7 @@ impl ContactTrial {
             force: mean(&force),
             force_variance: if coarse { force_variance.max(rounding * rounding) } else { force_variance },
             counts: counts.chunks_exact(every).map(|rows| rows.iter().all(|counts| *counts)).collect(),
+            encoder_steps,
             figures,
         })
     }
@@ -100,6 +104,14 @@ impl ContactTrial {
     pub fn duration_s(&self) -> f64 {
         self.time.last().unwrap_or(&0.0) - self.time.first().unwrap_or(&0.0)
     }
+}
+
+/// The encoder's step of every `every`th of `readings`; empty where there are no steps.
+fn encoder_steps(readings: &[f64], resolution: f64, every: usize) -> Vec<i64> {
+    if resolution <= 0.0 {
+        return Vec::new();
+    }
+    readings.chunks_exact(every).map(|rows| (rows[0] / resolution).round() as i64).collect()
 }
 
 /// Adds to the position's variance what smoothing cannot take of an encoder's rounding: where neither noise nor motion carries the

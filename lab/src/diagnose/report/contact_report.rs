@@ -16,7 +16,7 @@ use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::phase;
 use crate::diagnose::term::Term;
 use crate::diagnose::verdict::Verdict;
-use crate::effects::{self, Effect as _, LEARNED, Place, slug};
+use crate::effects::{self, Effect as _, LEARNED, LEARNED_FORM, Place, slug};
 use crate::page::quantity;
 use crate::rig::{Contact, Coordinate, Rig};
 
@@ -97,8 +97,12 @@ pub fn data(outcome: &Outcome) -> Data<'_> {
 pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
     let named = if outcome.named.is_empty() { &outcome.nominal } else { &outcome.chosen };
     let fit = outcome.learned.as_ref().map_or(named, |curve| &curve.fit);
-    let ends = (!outcome.named.is_empty() && outcome.learned.is_none()).then_some(outcome.intervals.as_slice());
-    let mut rig = with_law(given, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), ends);
+    let ends = match &outcome.learned {
+        Some(curve) => Some(curve.intervals(&outcome.intervals)),
+        None => (!outcome.named.is_empty()).then(|| outcome.intervals.clone()),
+    };
+    let first = fit.model.nominal_count();
+    let mut rig = with_law(given, &fit.model.terms, &fit.values, first, outcome.trials.len(), ends.as_deref());
     if outcome.verdict == Verdict::NoMismatch {
         rig.contact = given.contact;
     }
@@ -153,7 +157,7 @@ fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, loc
             let [_, _, without] = residuals.of_laws;
             rest.evidence.held_out_gain = residuals.share_of(without, rms(&data(outcome), &curve.residual));
             rest.statement.push_str(&learned_words(curve, outcome, rest.evidence.held_out_gain, coordinate));
-            LEARNED.spec().forms[0].equation.clone_into(&mut rest.equation);
+            LEARNED.spec().forms[LEARNED_FORM].equation.clone_into(&mut rest.equation);
         }
         rest
     });
@@ -216,7 +220,8 @@ fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate
         let (joint, by) = (if text.contains(": ") { ";" } else { ":" }, quantity::rounded(lower.abs(), force, 2));
         text.push_str(&format!("{joint} the way out lies {by} {side} the way in, in the mean, however slow"));
     }
-    text + "."
+    let [usual, most] = curve.half_widths().map(|half| quantity::rounded(half, force, 2));
+    text + &format!(". It is known to ±{usual} at half of its knots and to ±{most} at all (95 %).")
 }
 
 fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {

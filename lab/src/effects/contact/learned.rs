@@ -8,11 +8,11 @@ use crate::rig::Word;
 /// See [`SPEC`]. Found by its name alone: it is no physics, and no search asks for it.
 pub struct Learned;
 
-/// Knots of each curve.
-pub const LEARNED_KNOTS: usize = 12;
+/// Knots of each curve of the form that is fitted.
+pub const LEARNED_KNOTS: usize = 24;
 
-/// Values before those of the mean: the travel of a turn, and where each knot lies.
-pub const BEFORE_KNOTS: usize = 1 + LEARNED_KNOTS;
+/// Index of that form.
+pub const LEARNED_FORM: usize = 1;
 
 const fn force(name: &'static str, meaning: &'static str) -> Parameter {
     Parameter::new(name, Word::new("N", "N m"), meaning, f64::NEG_INFINITY, f64::INFINITY)
@@ -33,55 +33,39 @@ const TURN: Parameter = Parameter::new(
 const MEAN: &str = "force midway between the paths in and out";
 const LOOP: &str = "half the distance of the path in from the path out";
 
+/// The parameters of a form with the knots of these numbers.
+macro_rules! knots {
+    ($($number:literal)*) => {
+        &[
+            TURN,
+            $(place(concat!("place_", $number)),)*
+            $(force(concat!("mean_", $number), MEAN),)*
+            $(force(concat!("loop_", $number), LOOP),)*
+        ]
+    };
+}
+
 static SPEC: EffectSpec = EffectSpec {
     name: "learned",
     place: Place::Contact,
     stage: Stage::Limit,
     max_instances: 1,
     statement: "What no law of the list explains, as a curve over depth and direction",
-    forms: &[Form {
-        name: "depth_and_direction",
-        equation: "F = F_law + mean(x) + loop(x) z, dz = dx / turn within -1 <= z <= 1, straight between 12 knots",
-        parameters: &[
-            TURN,
-            place("place_01"),
-            place("place_02"),
-            place("place_03"),
-            place("place_04"),
-            place("place_05"),
-            place("place_06"),
-            place("place_07"),
-            place("place_08"),
-            place("place_09"),
-            place("place_10"),
-            place("place_11"),
-            place("place_12"),
-            force("mean_01", MEAN),
-            force("mean_02", MEAN),
-            force("mean_03", MEAN),
-            force("mean_04", MEAN),
-            force("mean_05", MEAN),
-            force("mean_06", MEAN),
-            force("mean_07", MEAN),
-            force("mean_08", MEAN),
-            force("mean_09", MEAN),
-            force("mean_10", MEAN),
-            force("mean_11", MEAN),
-            force("mean_12", MEAN),
-            force("loop_01", LOOP),
-            force("loop_02", LOOP),
-            force("loop_03", LOOP),
-            force("loop_04", LOOP),
-            force("loop_05", LOOP),
-            force("loop_06", LOOP),
-            force("loop_07", LOOP),
-            force("loop_08", LOOP),
-            force("loop_09", LOOP),
-            force("loop_10", LOOP),
-            force("loop_11", LOOP),
-            force("loop_12", LOOP),
-        ],
-    }],
+    forms: &[
+        Form {
+            name: "depth_and_direction",
+            equation: "F = F_law + mean(x) + loop(x) z, dz = dx / turn within -1 <= z <= 1, straight between 12 knots",
+            parameters: knots!("01" "02" "03" "04" "05" "06" "07" "08" "09" "10" "11" "12"),
+        },
+        Form {
+            name: "depth_and_direction_24",
+            equation: "F = F_law + mean(x) + loop(x) z, dz = dx / turn within -1 <= z <= 1, straight between 24 knots",
+            parameters: knots!(
+                "01" "02" "03" "04" "05" "06" "07" "08" "09" "10" "11" "12"
+                "13" "14" "15" "16" "17" "18" "19" "20" "21" "22" "23" "24"
+            ),
+        },
+    ],
     excited_by: "contacts to all depths that matter, in and out",
     resembles: &["layered_stiffness", "nonlinear_stiffness", "hysteresis"],
     source: "linear splines (C. de Boor, A Practical Guide to Splines, 1978) through an elastic slip (L. Prandtl, 1928)",
@@ -102,8 +86,9 @@ impl Effect for Learned {
         state[0] = touch.position;
         state[1] = (state[1] + moved / values[0].max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
         state[2] = 1.0;
-        let places = &values[1..BEFORE_KNOTS];
-        let (mean, half) = values[BEFORE_KNOTS..].split_at(LEARNED_KNOTS);
+        let knots = (values.len() - 1) / 3;
+        let (places, forces) = values[1..].split_at(knots);
+        let (mean, half) = forces.split_at(knots);
         let x = touch.position;
         touch.force += curve(places, mean, x) + state[1] * curve(places, half, x);
     }
@@ -129,8 +114,8 @@ mod tests {
 
     #[test]
     fn the_curve_goes_through_its_knots_and_is_level_beyond_them() {
-        let places: Vec<f64> = (0..LEARNED_KNOTS).map(|knot| (knot as f64).powi(2)).collect();
-        let knots: Vec<f64> = (0..LEARNED_KNOTS).map(|knot| (knot as f64).powi(3)).collect();
+        let places: Vec<f64> = (0..12).map(|knot| f64::from(knot).powi(2)).collect();
+        let knots: Vec<f64> = (0..12).map(|knot| f64::from(knot).powi(3)).collect();
         for (place, force) in places.iter().zip(&knots) {
             assert!((curve(&places, &knots, *place) - force).abs() < 1e-9);
         }
