@@ -3,7 +3,7 @@
 use crate::rig::{Contact, Drive, Reference, Rig};
 
 /// Lags after which an edge is over: exp(-60) is below the last bit of anything it is added to.
-const SETTLED: f64 = 60.0;
+const SETTLED_LAGS: f64 = 60.0;
 
 /// The paper's bench: to and fro through a soft surface every 30 s, 10 Hz on top.
 pub const BENCH: Reference = Reference {
@@ -37,7 +37,7 @@ impl Reference {
         let free = self.period_s - self.contact_s;
         let newest = (time / self.period_s).floor();
         // Older pulses have come and gone: their two edges cancel.
-        let oldest = (newest - (SETTLED * self.smoothing_s / self.period_s).ceil() - 1.0).max(0.0);
+        let oldest = (newest - (SETTLED_LAGS * self.smoothing_s / self.period_s).ceil() - 1.0).max(0.0);
         let (mut sum, mut rate) = (0.0, 0.0);
         let mut number = oldest;
         while number <= newest {

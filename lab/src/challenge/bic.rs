@@ -23,7 +23,7 @@ use crate::effects;
 use crate::sensors::Figures;
 
 /// Candidates of a round that are fitted in full.
-const FITTED: usize = 8;
+const MAX_FULL_FITS: usize = 8;
 
 /// Effects at most, as many as the diagnosis may name.
 const MOST_EFFECTS: usize = 4;
@@ -70,7 +70,7 @@ fn select(data: &Data<'_>, mut best: Fit) -> Fit {
         let (stiffness, surface) = (best.values[index::STIFFNESS], best.values[index::SURFACE]);
         let excitation = model.scales.excitation(data.trials, stiffness, surface, model.bilateral);
         let mut promises = Projection::of(data, &best).promises(&excitation);
-        promises.truncate(FITTED);
+        promises.truncate(MAX_FULL_FITS);
         let fits = promises.par_iter().map(|promise| {
             let start: Vec<f64> = best.values.iter().chain(&promise.values).copied().collect();
             data.fit(&best.model.with(promise.term), &start, Effort::FULL)

@@ -3,7 +3,7 @@
 use statrs::distribution::{Beta, ContinuousCDF as _};
 
 /// Half of what a 95 % interval leaves out.
-const TAIL: f64 = 0.025;
+const TAIL_PROBABILITY: f64 = 0.025;
 
 /// The 95 % interval of a probability of which `hits` of `of` were seen (C. J. Clopper, E. S. Pearson, Biometrika 26 (1934)
 /// 404); all of 0 to 1 where nothing was seen.
@@ -11,8 +11,8 @@ const TAIL: f64 = 0.025;
 pub fn clopper_pearson(hits: usize, of: usize) -> [f64; 2] {
     let (hit, missed) = (hits as f64, of.saturating_sub(hits) as f64);
     let quantile = |a: f64, b: f64, at: f64| Beta::new(a, b).map_or(f64::NAN, |beta| beta.inverse_cdf(at));
-    let low = if hits == 0 { 0.0 } else { quantile(hit, missed + 1.0, TAIL) };
-    let high = if hits >= of { 1.0 } else { quantile(hit + 1.0, missed, 1.0 - TAIL) };
+    let low = if hits == 0 { 0.0 } else { quantile(hit, missed + 1.0, TAIL_PROBABILITY) };
+    let high = if hits >= of { 1.0 } else { quantile(hit + 1.0, missed, 1.0 - TAIL_PROBABILITY) };
     [low, high]
 }
 

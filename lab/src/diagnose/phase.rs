@@ -22,18 +22,18 @@ pub enum Phase {
 }
 
 /// Part of the greatest depth, to either side of the surface, that a contact begins and ends in.
-const EDGE: f64 = 0.05;
+const ONSET_DEPTH_FRACTION: f64 = 0.05;
 
 /// Part of the usual speed in contact below which a tool stands still.
-const STANDING: f64 = 0.1;
+const MAX_HOLD_SPEED_FRACTION: f64 = 0.1;
 
 impl Phase {
     /// Of a row `depth` below the surface at speed `velocity`; `greatest` is the greatest depth, `usual` the usual speed in contact. A
     /// contact that pulls as well has no beginning and no end.
     #[must_use]
     pub fn of(depth: f64, velocity: f64, greatest: f64, usual: f64, bilateral: bool) -> Self {
-        let stands = velocity.abs() < STANDING * usual;
-        if !bilateral && depth.abs() < EDGE * greatest && !stands {
+        let stands = velocity.abs() < MAX_HOLD_SPEED_FRACTION * usual;
+        if !bilateral && depth.abs() < ONSET_DEPTH_FRACTION * greatest && !stands {
             return if velocity > 0.0 { Self::Onset } else { Self::Release };
         }
         if !bilateral && depth <= 0.0 {

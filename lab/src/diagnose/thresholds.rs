@@ -100,47 +100,47 @@ pub mod check_excitation {
     /// Ratio of speeds below which they are one speed.
     ///
     /// Unit: 1; chosen.
-    pub const ONE_SPEED: f64 = 1.5;
+    pub const MAX_SINGLE_SPEED_RATIO: f64 = 1.5;
 
     /// Share of the usual speed above which the tool moves.
     ///
     /// Unit: 1; chosen.
-    pub const MOVES: f64 = 0.1;
+    pub const MIN_MOVING_SPEED_FRACTION: f64 = 0.1;
 
     /// Range of depths, over the depth, below which it is one depth.
     ///
     /// Unit: 1; chosen.
-    pub const ONE_DEPTH: f64 = 0.2;
+    pub const MAX_SINGLE_DEPTH_FRACTION: f64 = 0.2;
 
     /// ... and rows, as recorded, on that way from which depth shows after all.
     ///
     /// Unit: 1; chosen.
-    pub const SHOWN: f64 = 20.0;
+    pub const MIN_DEPTH_ROWS: f64 = 20.0;
 
     /// Pieces of a contact among which a hold is looked for, ...
     ///
     /// Unit: count; chosen.
-    pub const PIECES: usize = 16;
+    pub const HOLD_SEGMENTS: usize = 16;
 
     /// ... how many in a row make one, ...
     ///
     /// Unit: count; chosen.
-    pub const HELD: usize = 3;
+    pub const MIN_HOLD_SEGMENTS: usize = 3;
 
     /// ... and how far they may differ, over the range of depths.
     ///
     /// Unit: 1; chosen.
-    pub const STILL: f64 = 0.03;
+    pub const MAX_HOLD_DEPTH_FRACTION: f64 = 0.03;
 
     /// Share of moving rows that have to go back for it to count.
     ///
     /// Unit: 1; chosen.
-    pub const BACK: f64 = 0.02;
+    pub const MIN_RETURN_FRACTION: f64 = 0.02;
 
     /// Fewest rows in contact that say anything of the motion.
     ///
     /// Unit: rows; chosen.
-    pub const ROWS: usize = 20;
+    pub const MIN_CONTACT_ROWS: usize = 20;
 }
 
 /// Of `check/position_steps`.

@@ -15,7 +15,7 @@ use crate::rig::Control;
 pub const TIMEOUT_TICKS: u16 = 2_000;
 
 /// References that wait in the drive, at least.
-const AHEAD: usize = 256;
+const MIN_BUFFERED_REFERENCES: usize = 256;
 
 /// How a drive under `control` follows `length` references, depths counted from `surface`, within `limits`.
 #[must_use]
@@ -64,7 +64,7 @@ impl References {
     /// # Errors
     /// The link is gone.
     pub fn top_up(&mut self, client: &mut Client, played: usize, mut take: impl FnMut(Message<'_>)) -> Result<()> {
-        while self.sent < self.depths.len() && self.sent < played + AHEAD {
+        while self.sent < self.depths.len() && self.sent < played + MIN_BUFFERED_REFERENCES {
             let end = (self.sent + POINTS).min(self.depths.len());
             let bytes: Vec<u8> = self.depths[self.sent..end].iter().flat_map(|depth| depth.to_le_bytes()).collect();
             // Asked once: what is sent twice would be followed twice.

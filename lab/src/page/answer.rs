@@ -19,7 +19,7 @@ impl Contact {
 }
 
 /// Break between two stretches of contact, over the longer of them, below which the tool bounced and they are one touch.
-const BOUNCE: f64 = 0.1;
+const MAX_BOUNCE_GAP_RATIO: f64 = 0.1;
 
 /// Touches as a person counts them: the bounces of one are no touches of their own.
 fn touches_of(trial: &Trial) -> usize {
@@ -34,7 +34,9 @@ fn touches_of(trial: &Trial) -> usize {
     let mut touches: Vec<[f64; 2]> = Vec::new();
     for stretch in stretches {
         match touches.last_mut() {
-            Some(last) if stretch[0] - last[1] < BOUNCE * length(*last).max(length(stretch)) => last[1] = stretch[1],
+            Some(last) if stretch[0] - last[1] < MAX_BOUNCE_GAP_RATIO * length(*last).max(length(stretch)) => {
+                last[1] = stretch[1]
+            }
             _ => touches.push(stretch),
         }
     }

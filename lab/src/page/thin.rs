@@ -5,11 +5,11 @@ const ROWS_OF_A_TRIAL: usize = 12_000;
 /// Numbers that the trials of a page share (at 5.3 bytes each), so that twenty recordings weigh no more than a few.
 const NUMBERS_OF_A_PAGE: usize = 2_000_000;
 /// Below this a picture is no longer one.
-const FEWEST: usize = 500;
+const MIN_PICTURE_ROWS: usize = 500;
 
 /// Rows that each trial of a page may show, where all trials together have `columns`.
 pub(crate) fn budget(columns: usize) -> usize {
-    (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST, ROWS_OF_A_TRIAL)
+    (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(MIN_PICTURE_ROWS, ROWS_OF_A_TRIAL)
 }
 
 /// At most `budget` of `total` rows, in order: the first and the last, those of `certain`, and in every stretch of

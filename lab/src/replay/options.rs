@@ -84,7 +84,7 @@ fn method(name: &str) -> Result<Method, String> {
 
 impl Options {
     /// Cut-off in Hz where the recording allows it.
-    const CUTOFF: f64 = 20.0;
+    const VELOCITY_CUTOFF_HZ: f64 = 20.0;
 
     /// Label and value of each setting, for the reader of a report.
     #[must_use]
@@ -94,7 +94,7 @@ impl Options {
             VelocityChoice::Matched => "position, velocity and force through the same filter (matched)",
         };
         let cutoff = self.velocity_cutoff.map_or_else(
-            || format!("{} Hz, or a fifth of the sample rate where that is less", Self::CUTOFF),
+            || format!("{} Hz, or a fifth of the sample rate where that is less", Self::VELOCITY_CUTOFF_HZ),
             |given| format!("{given} Hz"),
         );
         let forgotten = match self.contact_loss {
@@ -136,8 +136,8 @@ impl Options {
             return if fits { Ok((asked, None)) } else { Err(UsageError::new("--velocity-cutoff", asked, expected)) };
         }
         let lowered = 0.2 / period;
-        if lowered >= Self::CUTOFF {
-            return Ok((Self::CUTOFF, None));
+        if lowered >= Self::VELOCITY_CUTOFF_HZ {
+            return Ok((Self::VELOCITY_CUTOFF_HZ, None));
         }
         let rate = 1.0 / period;
         Ok((

@@ -19,7 +19,7 @@ pub const DAMPING: f64 = 5.0;
 pub const JUMPS: [usize; 2] = [6_000, 11_000];
 
 /// Rows behind an onset or a jump that count as its transient.
-const TRANSIENT: usize = 100;
+const TRANSIENT_ROWS: usize = 100;
 
 /// One method under all measures, mean and spread over the seeds.
 #[derive(Debug, Clone)]
@@ -127,7 +127,7 @@ fn row(estimator: Estimator, is_matched: bool, trials: &[PaperTrial]) -> Result<
         let steady = &estimates[up + 2000..down];
         let k = MeanAndDeviation::of(stiffness(steady));
         let b = MeanAndDeviation::of(damping(steady));
-        let covered = parts.clone().map(|part| inside(&estimates[part.start + TRANSIENT..part.end], part.start));
+        let covered = parts.clone().map(|part| inside(&estimates[part.start + TRANSIENT_ROWS..part.end], part.start));
         let rows = covered.iter().map(|(rows, _)| *rows as f64).sum::<f64>();
         let share = |at: usize| 100.0 * covered.iter().map(|(n, c)| *n as f64 * c[at]).sum::<f64>() / rows;
         let values = [
@@ -142,7 +142,7 @@ fn row(estimator: Estimator, is_matched: bool, trials: &[PaperTrial]) -> Result<
             share(1),
         ];
         columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
-        let quiet = |part: &std::ops::Range<usize>| &estimates[part.start + 2 * TRANSIENT..part.end];
+        let quiet = |part: &std::ops::Range<usize>| &estimates[part.start + 2 * TRANSIENT_ROWS..part.end];
         let alarms = parts.iter().flat_map(quiet).filter(|e| e.flags.contains(Flags::CHANGED));
         false_alarms += alarms.count();
     }

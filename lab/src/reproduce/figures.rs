@@ -5,7 +5,7 @@ use palpate::Estimate;
 
 use super::comparison;
 use super::estimator::{Estimator, as_the_paper};
-use super::force_control::{self, StiffnessSource, WANTED};
+use super::force_control::{self, StiffnessSource, TARGET_FORCE_N};
 use super::measure::{damping, stiffness};
 use super::paper_contact::{PaperContact, PaperTrial};
 use super::paper_tables::{PaperVariant, Trials};
@@ -26,7 +26,7 @@ pub struct Figure {
 }
 
 /// Seconds by which a picture begins before the touch.
-const BEFORE: f64 = 0.3;
+const LEAD_TIME_S: f64 = 0.3;
 
 /// Traces of the paper's four on one trial of a contact.
 struct Traces<'a> {
@@ -67,7 +67,7 @@ impl<'a> Traces<'a> {
     }
 
     fn plot(&self, up: &'static str, y: (f64, f64), until: f64, value: fn(&[Estimate]) -> Vec<f64>) -> Plot {
-        plot("seconds since the touch", up, (-BEFORE, until), y, self.curves(value))
+        plot("seconds since the touch", up, (-LEAD_TIME_S, until), y, self.curves(value))
     }
 }
 
@@ -347,7 +347,7 @@ fn flights_plot(flights: &[force_control::ForceControlResult]) -> Plot {
         curve(&row.source.name(), [8, 0, 1, 4, 6][at.min(4)], points)
     };
     let mut curves: Vec<Curve> = flights.iter().filter(shown).enumerate().map(curve).collect();
-    let wanted = vec![(-300.0, WANTED), (2000.0, WANTED)];
+    let wanted = vec![(-300.0, TARGET_FORCE_N), (2000.0, TARGET_FORCE_N)];
     curves.insert(0, Curve { name: "wanted".into(), colour: 7, dashed: true, points: wanted });
     plot("milliseconds since the jump", "force, N", (-300.0, 2000.0), (0.0, 6.5), curves)
 }

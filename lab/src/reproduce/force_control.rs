@@ -23,21 +23,21 @@ use crate::simulate::{self, CommandSource, Measurement};
 /// Runs of each.
 pub const SEEDS: u64 = 5;
 /// The force that is asked for, N.
-pub const WANTED: f64 = 3.0;
+pub const TARGET_FORCE_N: f64 = 3.0;
 /// w, 1/s.
-const BANDWIDTH: f64 = 2.0;
+const BANDWIDTH_RAD_S: f64 = 2.0;
 /// Bounds that no estimate leaves, N/m.
 const BOUNDS: (f64, f64) = (100.0, 3000.0);
 /// K before anything is known: stiff, so that the loop is slow.
-const CAUTIOUS: f64 = 1000.0;
+const INITIAL_STIFFNESS_N_M: f64 = 1000.0;
 /// Speed of the approach, m/s.
-const APPROACH: f64 = 0.02;
+const APPROACH_SPEED_M_S: f64 = 0.02;
 /// Amplitude of the dither on the command, m, and its frequency, Hz: what the estimators live on.
 const DITHER: (f64, f64) = (1.5e-3, 10.0);
 /// Share of the wanted force within which it is held.
-const BAND: f64 = 0.05;
+const HOLD_TOLERANCE: f64 = 0.05;
 /// Rows of one period of the dither: the force is judged by its mean over them.
-const PERIOD: usize = 100;
+const DITHER_PERIOD_ROWS: usize = 100;
 
 /// Where K comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,7 +127,7 @@ impl Adaptive {
             }
             _ => None,
         };
-        let believed = if source == StiffnessSource::Fixed { STIFFNESS[0] } else { CAUTIOUS };
+        let believed = if source == StiffnessSource::Fixed { STIFFNESS[0] } else { INITIAL_STIFFNESS_N_M };
         let log = Vec::new();
         Ok(Self { source, running, gain, believed, depth: -2e-3, integral: 0.0, touched: false, log })
     }
@@ -154,15 +154,15 @@ impl CommandSource for Adaptive {
         self.log.push((measurement.time, measurement.true_force, self.believed));
         let dither = DITHER.0 * (std::f64::consts::TAU * DITHER.1 * measurement.time).sin();
         if !self.touched {
-            self.touched = measurement.force > 0.5 * WANTED;
-            self.depth += APPROACH * 1e-3;
+            self.touched = measurement.force > 0.5 * TARGET_FORCE_N;
+            self.depth += APPROACH_SPEED_M_S * 1e-3;
             let worth = self.gain * self.believed / (self.gain + self.believed);
-            self.integral = self.depth - WANTED / worth;
+            self.integral = self.depth - TARGET_FORCE_N / worth;
             return self.depth + dither;
         }
         let worth = self.gain * self.believed / (self.gain + self.believed);
-        self.integral += 1e-3 * BANDWIDTH * (WANTED - measurement.force) / worth;
-        WANTED / worth + self.integral + dither
+        self.integral += 1e-3 * BANDWIDTH_RAD_S * (TARGET_FORCE_N - measurement.force) / worth;
+        TARGET_FORCE_N / worth + self.integral + dither
     }
 }
 
@@ -198,9 +198,9 @@ fn fly(rig: &Rig, gain: f64, source: StiffnessSource, seed: u64) -> Result<Fligh
     let mut flight = Flight::default();
     let mut sum = 0.0;
     for (k, (time, force, believed)) in controller.log.iter().enumerate() {
-        sum += force - k.checked_sub(PERIOD).map_or(0.0, |past| controller.log[past].1);
+        sum += force - k.checked_sub(DITHER_PERIOD_ROWS).map_or(0.0, |past| controller.log[past].1);
         flight.time.push(*time);
-        flight.force.push(sum / (k + 1).min(PERIOD) as f64);
+        flight.force.push(sum / (k + 1).min(DITHER_PERIOD_ROWS) as f64);
         flight.stiffness.push(*believed);
     }
     Ok(flight)
@@ -209,13 +209,13 @@ fn fly(rig: &Rig, gain: f64, source: StiffnessSource, seed: u64) -> Result<Fligh
 fn row(source: StiffnessSource, mut flights: Vec<Flight>) -> ForceControlResult {
     let departures = |flight: &Flight, rows: std::ops::Range<usize>| -> Vec<f64> {
         let end = rows.end.min(flight.force.len());
-        flight.force[rows.start.min(end)..end].iter().map(|force| (force / WANTED - 1.0).abs()).collect()
+        flight.force[rows.start.min(end)..end].iter().map(|force| (force / TARGET_FORCE_N - 1.0).abs()).collect()
     };
     let [up, down] = JUMPS;
     let over = |measure: &dyn Fn(&Flight) -> f64| MeanAndDeviation::of(flights.iter().map(measure));
     let settled = |rows: std::ops::Range<usize>| {
         over(&|flight| {
-            let last = departures(flight, rows.clone()).iter().rposition(|d| d.is_nan() || *d > BAND);
+            let last = departures(flight, rows.clone()).iter().rposition(|d| d.is_nan() || *d > HOLD_TOLERANCE);
             last.map_or(0.0, |last| last as f64 + 1.0)
         })
     };
@@ -225,7 +225,7 @@ fn row(source: StiffnessSource, mut flights: Vec<Flight>) -> ForceControlResult 
     let swing =
         |flight: &Flight, rows: std::ops::Range<usize>| departures(flight, rows).into_iter().fold(0.0, f64::max);
     let end = 15_800;
-    let unstable = flights.iter().filter(|flight| swing(flight, down - 1000..down) > 2.0 * BAND).count();
+    let unstable = flights.iter().filter(|flight| swing(flight, down - 1000..down) > 2.0 * HOLD_TOLERANCE).count();
     let rms = over(&|flight| {
         let all = departures(flight, up..end);
         100.0 * (all.iter().map(|d| d * d).sum::<f64>() / all.len() as f64).sqrt()

@@ -47,7 +47,7 @@ const BOTTOM: f64 = 244.0;
 const LEFT: f64 = 0.105;
 const RIGHT: f64 = 0.985;
 /// Steps of the stretched picture.
-const GRAIN: f64 = 1000.0;
+const GRID: f64 = 1000.0;
 /// Points that a curve keeps, at most twice.
 const POINTS: usize = 450;
 
@@ -108,7 +108,7 @@ impl Plot {
             }
             line.base x1=(across(LEFT)) x2=(across(RIGHT)) y1=(px(BOTTOM)) y2=(px(BOTTOM)) {}
             text.soft x=(across(RIGHT)) y=(px(HEIGHT - 8.0)) text-anchor="end" { (self.across) }
-            svg x=(across(LEFT)) width=(across(RIGHT - LEFT)) y=(px(TOP)) height=(px(BOTTOM - TOP)) viewBox={ "0 0 " (GRAIN) " " (GRAIN) } preserveAspectRatio="none" {
+            svg x=(across(LEFT)) width=(across(RIGHT - LEFT)) y=(px(TOP)) height=(px(BOTTOM - TOP)) viewBox={ "0 0 " (GRID) " " (GRID) } preserveAspectRatio="none" {
                 @for curve in &self.curves {
                     path class={ "curve c" (curve.colour) (if curve.dashed { " dashed" } else { "" }) } d=(self.path(curve)) vector-effect="non-scaling-stroke" {}
                 }
@@ -137,7 +137,7 @@ impl Plot {
             let (x, y) = (share(x, self.x, self.logarithmic.0), share(y, self.y, self.logarithmic.1));
             let word = if begun { 'L' } else { 'M' };
             // A curve that leaves the picture is cut at half a height beyond it.
-            path += &format!("{word}{:.1} {:.1}", GRAIN * x, GRAIN * (1.0 - y.clamp(-0.5, 1.5)));
+            path += &format!("{word}{:.1} {:.1}", GRID * x, GRID * (1.0 - y.clamp(-0.5, 1.5)));
             begun = true;
         }
         path

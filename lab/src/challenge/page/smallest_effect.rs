@@ -16,10 +16,10 @@ use crate::diagnose::diagnose;
 use crate::diagnose::report::diagnosis::Trace;
 
 /// Rows of the picture.
-const ROWS: usize = 900;
+const PICTURE_ROWS: usize = 900;
 
 /// Deviation of normal noise over the median of its absolute value: rows at the very touch do not count.
-const NORMAL: f64 = 1.4826;
+const DEVIATION_OVER_MAD: f64 = 1.4826;
 
 /// What is drawn, row by row.
 struct Picture {
@@ -76,8 +76,8 @@ fn picture(row: &CaseScore) -> Option<Picture> {
     let trial = trials.iter().find(|trial| trial.name == trace.trial)?;
     let raw = if trace.channel == "force" { trial.force.as_ref()? } else { trial.effort.as_ref()? };
     let middle = busiest(trace);
-    let first = middle.saturating_sub(ROWS / 2);
-    let rows: Vec<usize> = (first..(first + ROWS).min(trace.time.len())).collect();
+    let first = middle.saturating_sub(PICTURE_ROWS / 2);
+    let rows: Vec<usize> = (first..(first + PICTURE_ROWS).min(trace.time.len())).collect();
     let nearest = |time: f64| trial.time.partition_point(|t| *t < time - 1e-9).min(raw.len() - 1);
     let recorded: Vec<f64> = rows.iter().map(|row| raw[nearest(trace.time[*row])]).collect();
     let simulated: Vec<f64> = rows.iter().map(|row| f64::from(trace.refitted[*row])).collect();
@@ -87,7 +87,7 @@ fn picture(row: &CaseScore) -> Option<Picture> {
         unit: found.pictures.force_unit,
         time: rows.iter().map(|row| trace.time[*row]).collect(),
         effect: rows.iter().map(|row| changes[*row]).collect(),
-        deviation: NORMAL * apart,
+        deviation: DEVIATION_OVER_MAD * apart,
         recorded,
         simulated,
         named: found.answer.summary.clone(),
@@ -101,15 +101,15 @@ fn change(trace: &Trace) -> impl Iterator<Item = f64> {
 /// The row about which the effect changes most.
 fn busiest(trace: &Trace) -> usize {
     let changes: Vec<f64> = change(trace).map(|c| c * c).collect();
-    let mut sum: f64 = changes.iter().take(ROWS).sum();
+    let mut sum: f64 = changes.iter().take(PICTURE_ROWS).sum();
     let (mut best, mut at) = (sum, 0);
-    for end in ROWS..changes.len() {
-        sum += changes[end] - changes[end - ROWS];
+    for end in PICTURE_ROWS..changes.len() {
+        sum += changes[end] - changes[end - PICTURE_ROWS];
         if sum > best {
-            (best, at) = (sum, end + 1 - ROWS);
+            (best, at) = (sum, end + 1 - PICTURE_ROWS);
         }
     }
-    at + ROWS / 2
+    at + PICTURE_ROWS / 2
 }
 
 fn difference(picture: &Picture) -> Vec<f64> {

@@ -100,22 +100,22 @@ fn residual(rig: &Rig, origin: &str, trial: &Recording, own: OwnToTrial) -> Resu
         values[index::SURFACE] = surface;
         placed_residual(&fine[0], &model.predicted(&values, &fine[0], 0), own)
     };
-    let step = (to - from) / PLACES as f64;
-    let places = (0..=PLACES).map(|at| from + at as f64 * step).chain([given[index::SURFACE]]);
+    let step = (to - from) / SURFACE_GRID_POINTS as f64;
+    let places = (0..=SURFACE_GRID_POINTS).map(|at| from + at as f64 * step).chain([given[index::SURFACE]]);
     let cost = |surface: f64| energy(&placed(surface));
     let nearest = places.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).context("no place to start from")?;
     Ok(placed(least_between(nearest - step, nearest + step, cost)))
 }
 
 /// Places of the surface that are compared over the way.
-const PLACES: usize = 60;
+const SURFACE_GRID_POINTS: usize = 60;
 
 /// The least of `cost` between two ends, by golden section.
 fn least_between(mut low: f64, mut high: f64, cost: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.618_034;
-    const STEPS: usize = 40;
-    for _ in 0..STEPS {
-        let [left, right] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+    const GOLDEN_SECTION: f64 = 0.618_034;
+    const SEARCH_STEPS: usize = 40;
+    for _ in 0..SEARCH_STEPS {
+        let [left, right] = [high - GOLDEN_SECTION * (high - low), low + GOLDEN_SECTION * (high - low)];
         if cost(left) < cost(right) { high = right } else { low = left }
     }
     0.5 * (low + high)

@@ -3,7 +3,7 @@
 use crate::recording::Recording;
 
 /// Share of the travel by which a motion has to come back to have turned: less is noise, or a pause.
-const BACK: f64 = 0.1;
+const MIN_REVERSAL_FRACTION: f64 = 0.1;
 
 /// Shares of the time between which a trial is parted; a turn beyond leaves one side with next to nothing.
 const MIDDLE: (f64, f64) = (0.3, 0.7);
@@ -24,7 +24,7 @@ pub fn split_at_turn(trial: &Recording) -> Option<[Recording; 2]> {
 fn turns(position: &[f64]) -> Vec<usize> {
     let (low, high) =
         position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    let back = BACK * (high - low);
+    let back = MIN_REVERSAL_FRACTION * (high - low);
     let (mut found, mut lowest, mut highest, mut goes_out) = (Vec::new(), 0, 0, false);
     for (row, x) in position.iter().enumerate() {
         if goes_out {

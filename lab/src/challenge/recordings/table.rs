@@ -3,7 +3,7 @@
 use super::specimen_score::{RecordingScores, SpecimenScore, spaced};
 
 /// Names offered beside the answer that a table has room for.
-const MOST: usize = 3;
+const MAX_ALTERNATIVES: usize = 3;
 
 /// One line: how many came out how.
 #[must_use]
@@ -72,8 +72,8 @@ fn of(row: &SpecimenScore) -> String {
 /// The first of the alternatives, and how many more there are.
 #[must_use]
 pub fn rivals(row: &SpecimenScore) -> String {
-    let first = &row.alternatives[..row.alternatives.len().min(MOST)];
-    match row.alternatives.len().saturating_sub(MOST) {
+    let first = &row.alternatives[..row.alternatives.len().min(MAX_ALTERNATIVES)];
+    match row.alternatives.len().saturating_sub(MAX_ALTERNATIVES) {
         _ if first.is_empty() => "-".to_owned(),
         0 => spaced(first),
         more => format!("{} and {more} more", spaced(first)),

@@ -4,7 +4,8 @@ use super::checked_trial::{CheckedTrial, bounds, quantile};
 use super::ranked_finding::RankedFinding;
 use super::wording::quantity;
 use crate::diagnose::thresholds::check_excitation::{
-    BACK, HELD, MOVES, ONE_DEPTH, ONE_SPEED, PIECES, ROWS, SHOWN, STILL,
+    HOLD_SEGMENTS, MAX_HOLD_DEPTH_FRACTION, MAX_SINGLE_DEPTH_FRACTION, MAX_SINGLE_SPEED_RATIO, MIN_CONTACT_ROWS,
+    MIN_DEPTH_ROWS, MIN_HOLD_SEGMENTS, MIN_MOVING_SPEED_FRACTION, MIN_RETURN_FRACTION,
 };
 use crate::rig::Rig;
 
@@ -24,12 +25,12 @@ pub fn lacking(rig: &Rig, views: &[CheckedTrial<'_>]) -> Vec<RankedFinding> {
     let Some(first) = views.first() else { return Vec::new() };
     let in_contact = rig.contact.is_some() && views.iter().any(|view| view.force.is_some());
     let motion = Motion::of(rig, views, in_contact);
-    if motion.speeds.len() < ROWS {
+    if motion.speeds.len() < MIN_CONTACT_ROWS {
         return Vec::new();
     }
     let usual = quantile(motion.speeds.iter().map(|speed| speed.abs()).collect(), 0.95).unwrap_or(0.0);
     let noise = views.iter().map(|view| view.noise[1]).fold(0.0, f64::max);
-    let threshold = (MOVES * usual).max(4.0 * noise);
+    let threshold = (MIN_MOVING_SPEED_FRACTION * usual).max(4.0 * noise);
     let way = |sign: f64| -> Vec<f64> {
         motion.speeds.iter().map(|speed| sign * speed).filter(|speed| *speed > threshold).collect()
     };
@@ -78,7 +79,7 @@ impl Motion {
             quantity(deep, length),
         );
         let on_way = self.depths().iter().filter(|depth| WAY.contains(&(depth.abs() / deep))).count() as f64;
-        (spread < ONE_DEPTH * deep && on_way * self.stride < SHOWN)
+        (spread < MAX_SINGLE_DEPTH_FRACTION * deep && on_way * self.stride < MIN_DEPTH_ROWS)
             .then(|| RankedFinding::mild("one_depth", "motion", 0.0, text))
     }
 
@@ -87,21 +88,21 @@ impl Motion {
         let (spread, _) = self.spread()?;
         let longest = self.stretches.iter().map(Vec::len).max()?;
         let held = |stretch: &&Vec<f64>| {
-            let size = stretch.len() / PIECES;
+            let size = stretch.len() / HOLD_SEGMENTS;
             // A fleeting touch beside long ones is no hold.
             if size == 0 || 4 * stretch.len() < longest {
                 return false;
             }
             let means: Vec<f64> =
                 stretch.chunks_exact(size).map(|piece| piece.iter().sum::<f64>() / size as f64).collect();
-            means.windows(HELD).any(|means| {
+            means.windows(MIN_HOLD_SEGMENTS).any(|means| {
                 let (low, high) = bounds(means);
-                high - low < STILL * spread
+                high - low < MAX_HOLD_DEPTH_FRACTION * spread
             })
         };
         let text = "The tool never stays at a depth: whether the force relaxes under a held contact cannot be distinguished from damping and hysteresis. Add a hold of \
                     some seconds, as long as the slowest change that matters.";
-        (longest > PIECES && !self.stretches.iter().any(|stretch| held(&stretch)))
+        (longest > HOLD_SEGMENTS && !self.stretches.iter().any(|stretch| held(&stretch)))
             .then(|| RankedFinding::mild("no_hold", "motion", 0.0, text))
     }
 }
@@ -112,8 +113,8 @@ fn one_speed(length: &str, inward: &[f64], outward: &[f64], in_contact: bool) ->
         Some((high? / low?, mid?))
     };
     let ways: Vec<(f64, f64)> =
-        [inward, outward].into_iter().filter(|way| way.len() >= ROWS / 2).filter_map(speed).collect();
-    if ways.is_empty() || ways.iter().any(|(ratio, _)| *ratio > ONE_SPEED) {
+        [inward, outward].into_iter().filter(|way| way.len() >= MIN_CONTACT_ROWS / 2).filter_map(speed).collect();
+    if ways.is_empty() || ways.iter().any(|(ratio, _)| *ratio > MAX_SINGLE_SPEED_RATIO) {
         return None;
     }
     let unit = format!("{length}/s");
@@ -132,7 +133,7 @@ fn one_speed(length: &str, inward: &[f64], outward: &[f64], in_contact: bool) ->
 
 fn one_way(inward: &[f64], outward: &[f64]) -> Option<RankedFinding> {
     let all = (inward.len() + outward.len()) as f64;
-    let lacks = |way: &[f64]| (way.len() as f64) < BACK * all;
+    let lacks = |way: &[f64]| (way.len() as f64) < MIN_RETURN_FRACTION * all;
     let text = match (lacks(outward), lacks(inward)) {
         (true, _) => {
             "The tool goes in but never comes out: hysteresis, a lasting dent, adhesion and play cannot be seen. Record the way out as well."
@@ -142,5 +143,5 @@ fn one_way(inward: &[f64], outward: &[f64]) -> Option<RankedFinding> {
         }
         _ => return None,
     };
-    (all > ROWS as f64 / 2.0).then(|| RankedFinding::mild("one_way", "motion", 0.0, text))
+    (all > MIN_CONTACT_ROWS as f64 / 2.0).then(|| RankedFinding::mild("one_way", "motion", 0.0, text))
 }

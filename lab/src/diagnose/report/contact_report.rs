@@ -184,7 +184,7 @@ fn described(outcome: &Outcome, named: &NamedTerm, evidence: Evidence, coordinat
 fn unknown(locations: &[Location], beside: bool) -> Physics {
     let place = locations
         .first()
-        .filter(|place| place.share >= summary::MOST)
+        .filter(|place| place.share >= summary::MAJORITY_SHARE)
         .map(|place| format!(", most of it during {} ({})", phase::word(place.phase), place.states))
         .unwrap_or_default();
     let what = if beside { "Beside that, something" } else { "Something" };

@@ -64,7 +64,7 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
 }
 
 /// Deviations of the sensor from its usual reading outside of the contact from which a force acts there.
-const PULLS: f64 = 8.0;
+const MIN_PULL_DEVIATIONS: f64 = 8.0;
 
 /// Tells of a force reading outside of the contact whether something acts: against the usual reading there.
 fn pull(trial: &ContactTrial, surface: f64) -> impl Fn(f64) -> bool {
@@ -72,7 +72,7 @@ fn pull(trial: &ContactTrial, surface: f64) -> impl Fn(f64) -> bool {
     let mut readings: Vec<f64> = outside.map(|(force, _)| *force).collect();
     readings.sort_by(f64::total_cmp);
     let usual = readings.get(readings.len() / 2).copied().unwrap_or(0.0);
-    let limit = PULLS * trial.force_variance.sqrt();
+    let limit = MIN_PULL_DEVIATIONS * trial.force_variance.sqrt();
     move |force| (force - usual).abs() > limit
 }
 

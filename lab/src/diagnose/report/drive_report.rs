@@ -194,7 +194,7 @@ fn described(named: &NamedEffect, coordinate: Coordinate, evidence: Evidence) ->
 fn unknown(locations: &[Location], beside: bool) -> Physics {
     let place = locations
         .first()
-        .filter(|place| place.share >= summary::MOST)
+        .filter(|place| place.share >= summary::MAJORITY_SHARE)
         .map(|place| format!(", most of it at {}", place.states))
         .unwrap_or_default();
     let what = if beside { "Beside that, a force" } else { "A force" };

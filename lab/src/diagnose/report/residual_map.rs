@@ -10,14 +10,14 @@ use crate::rig::Coordinate;
 
 /// Places that are reported, and the least share of the channel's energy that is one.
 const MOST_PLACES: usize = 4;
-const LEAST_SHARE: f64 = 0.02;
+const MIN_LOCATION_SHARE: f64 = 0.02;
 
 /// Bins along a quantity.
 const BINS: usize = 8;
 
 /// Part of what the answer gains in a trial that the stretch which shows it holds, and the blocks that it is made of.
-const SHOWN_PART: f64 = 0.6;
-const BLOCKS: usize = 200;
+const STRETCH_SHARE: f64 = 0.6;
+const STRETCH_BLOCKS: usize = 200;
 
 /// A row of a channel: its state, and the power of the residual in it.
 pub(super) struct ResidualRow {
@@ -86,7 +86,7 @@ impl ChannelResidual<'_> {
         let mut places: Vec<(f64, &[ResidualRow])> = passes
             .into_iter()
             .map(|rows| (above(rows) / total, rows))
-            .filter(|(share, _)| *share >= LEAST_SHARE)
+            .filter(|(share, _)| *share >= MIN_LOCATION_SHARE)
             .collect();
         places.sort_by(|a, b| b.0.total_cmp(&a.0));
         places.truncate(MOST_PLACES);
@@ -114,7 +114,7 @@ impl ChannelResidual<'_> {
     pub(super) fn shortest_stretch(&self) -> Option<(usize, [f64; 2])> {
         let trials: Vec<&[ResidualRow]> = self.rows.chunk_by(|a, b| a.trial == b.trial).collect();
         let blocks = |rows: &[ResidualRow]| -> Vec<(f64, [f64; 2])> {
-            let size = rows.len().div_ceil(BLOCKS).max(1);
+            let size = rows.len().div_ceil(STRETCH_BLOCKS).max(1);
             let each = rows.chunks(size).map(|block| {
                 let gained: f64 = block.iter().map(|row| row.gained).sum();
                 (gained.max(0.0), [block[0].time_s, block[block.len() - 1].time_s])
@@ -124,7 +124,7 @@ impl ChannelResidual<'_> {
         let sum = |blocks: &[(f64, [f64; 2])]| blocks.iter().map(|block| block.0).sum::<f64>();
         let all = trials.into_iter().map(|rows| (rows[0].trial, blocks(rows)));
         let (trial, blocks) = all.max_by(|a, b| sum(&a.1).total_cmp(&sum(&b.1)))?;
-        let wanted = SHOWN_PART * sum(&blocks);
+        let wanted = STRETCH_SHARE * sum(&blocks);
         let (mut first, mut held, mut shortest) = (0, 0.0, None::<[usize; 2]>);
         for last in 0..blocks.len() {
             held += blocks[last].0;

@@ -10,7 +10,7 @@ use crate::rig::Coordinate;
 pub(super) const MOST_OVER_NOISE: f64 = 1.15;
 
 /// Share of a mismatch from which a place holds most of it.
-pub const MOST: f64 = 0.5;
+pub const MAJORITY_SHARE: f64 = 0.5;
 
 /// Whether what the answer leaves is what the sensors leave.
 #[must_use]
@@ -43,15 +43,17 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
             )
         }
         Verdict::Unknown => {
-            let place =
-                answer.locations.first().filter(|place| place.share >= MOST).map_or(String::new(), |location| {
+            let place = answer.locations.first().filter(|place| place.share >= MAJORITY_SHARE).map_or(
+                String::new(),
+                |location| {
                     format!(
                         " {} of it lies in the {}{}.",
                         quantity::percent(100.0 * location.share),
                         location.channel,
                         during(location)
                     )
-                });
+                },
+            );
             format!(
                 "Something is missing that no effect of the list explains: {before} are left where the sensors leave {expected_noise}.{place}"
             )

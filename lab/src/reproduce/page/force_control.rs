@@ -3,14 +3,14 @@
 use maud::{Markup, html};
 
 use super::super::Results;
-use super::super::force_control::{ForceControlResult, SEEDS, StiffnessSource, WANTED};
+use super::super::force_control::{ForceControlResult, SEEDS, StiffnessSource, TARGET_FORCE_N};
 use super::{grid, spread, wide};
 use crate::reproduce::estimator::Estimator;
 
 pub(super) fn section(results: &Results) -> Markup {
     let table = html! {
         table.better {
-            caption { "Mean ± spread of " (SEEDS) " flights. Peak: largest departure; rms: from the first jump to the end; both in % of the wanted " (WANTED) " N" }
+            caption { "Mean ± spread of " (SEEDS) " flights. Peak: largest departure; rms: from the first jump to the end; both in % of the wanted " (TARGET_FORCE_N) " N" }
             thead { tr { th scope="col" { "K from" } th scope="col" { "back within 5 %, jump up, ms" } th scope="col" { "jump down, ms" } th scope="col" { "peak up, %" } th scope="col" { "peak down, %" } th scope="col" { "rms, %" } th scope="col" { "flights that swing" } } }
             tbody { @for row in &results.force { (line(row)) } }
         }

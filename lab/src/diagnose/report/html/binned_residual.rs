@@ -13,12 +13,12 @@ const BOTTOM: f64 = 156.0;
 const LEFT: f64 = 0.13;
 const RIGHT: f64 = 0.995;
 /// Words under the columns fit a picture of this many px.
-const NARROWEST: f64 = 262.0;
-const LETTER: f64 = 6.4;
+const MIN_WIDTH_PX: f64 = 262.0;
+const LETTER_PX: f64 = 6.4;
 /// A share from which on it is written over its column.
-const BIG: f64 = 0.1;
+const MIN_LABELLED_SHARE: f64 = 0.1;
 /// A share of what hardly rises above the noise is a share of nothing.
-const RISES: f64 = 1.5;
+const MIN_POWER_OVER_NOISE: f64 = 1.5;
 /// Powers over the noise beyond this need a logarithmic scale.
 const WIDEST_LINEAR: f64 = 20.0;
 
@@ -54,9 +54,10 @@ fn title(map: &BinnedResidual) -> String {
 
 fn most(map: &BinnedResidual) -> String {
     let bins = map.share.iter().zip(&map.labels).zip(&map.before);
-    let risen = bins.filter(|((share, _), before)| share.is_finite() && **before >= RISES).map(|(bin, _)| bin);
+    let risen =
+        bins.filter(|((share, _), before)| share.is_finite() && **before >= MIN_POWER_OVER_NOISE).map(|(bin, _)| bin);
     match risen.max_by(|a, b| a.0.total_cmp(b.0)) {
-        Some((most, label)) if *most >= BIG => {
+        Some((most, label)) if *most >= MIN_LABELLED_SHARE => {
             let unit = unit(&map.unit);
             let known = unit.is_empty() || label.ends_with(&unit);
             let unit = if known { String::new() } else { format!("\u{a0}{unit}") };
@@ -163,8 +164,8 @@ fn is_labelled(map: &BinnedResidual, bin: usize) -> bool {
     // Of two that are equal the first is written.
     let is_peak =
         bigger.into_iter().all(|(other, share)| map.share[bin] > share || (map.share[bin] == share && bin < other));
-    let roomy = NARROWEST / map.labels.len() as f64 > 5.0 * LETTER;
-    map.share[bin] >= BIG && map.before[bin] >= RISES && (roomy || is_peak)
+    let roomy = MIN_WIDTH_PX / map.labels.len() as f64 > 5.0 * LETTER_PX;
+    map.share[bin] >= MIN_LABELLED_SHARE && map.before[bin] >= MIN_POWER_OVER_NOISE && (roomy || is_peak)
 }
 
 fn pillar(class: &str, start: f64, width: f64, top: Option<f64>) -> Markup {
@@ -182,7 +183,7 @@ fn pillar(class: &str, start: f64, width: f64, top: Option<f64>) -> Markup {
 fn ticks(map: &BinnedResidual) -> Markup {
     let bins = map.labels.len();
     let longest = map.labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) as f64;
-    let crowd = (longest + 1.5) * LETTER * bins as f64 / NARROWEST;
+    let crowd = (longest + 1.5) * LETTER_PX * bins as f64 / MIN_WIDTH_PX;
     let every = (0.5 * crowd).ceil().max(1.0) as usize;
     let pitch = (RIGHT - LEFT) / bins.max(1) as f64;
     html! {

@@ -1,7 +1,7 @@
 //! Names and figures as a mechanic says them.
 
 use super::super::diagnosis::{Diagnosis, Location, Phase};
-use super::super::summary::MOST;
+use super::super::summary::MAJORITY_SHARE;
 use crate::page::effect_name::effect_name;
 use crate::page::quantity::{between, percent, plain, rounded, with_interval};
 use maud::{Markup, html};
@@ -132,7 +132,7 @@ pub(super) fn worst<'a>(answer: &'a Diagnosis, trial: Option<&str>) -> Option<&'
 
 /// "Most of it, 64 % in the force, lies "; of less than half, "The largest part in one place, ...".
 pub(super) fn largest_part(place: &Location) -> String {
-    let part = if place.share >= MOST { "Most of it" } else { "The largest part of it in one place" };
+    let part = if place.share >= MAJORITY_SHARE { "Most of it" } else { "The largest part of it in one place" };
     format!("{part}, {} in the {}, lies ", share(place.share), channel(place.channel))
 }
 
