@@ -25,7 +25,7 @@ pub(super) fn section(rounds: &[Round]) -> Markup {
     html! {
         @if !shown.is_empty() {
             section {
-                h2 { "What became of the intervals" }
+                h2 { "95 % intervals after each round" }
                 @for history in &shown { (figure(history)) }
             }
         }
@@ -41,7 +41,7 @@ fn figure(history: &[(u64, ValueState)]) -> Markup {
     let Some((_, last)) = history.last() else { return html! {} };
     html! {
         figure {
-            figcaption { (last.name.replace('_', " ")) " of " (effect_name(&last.effect)) ": " (plain(low, &last.unit)) " to " (plain(high, &last.unit)) }
+            figcaption { (last.name.replace('_', " ")) " of " (effect_name(&last.effect)) ": between " (plain(low, &last.unit)) " and " (plain(high, &last.unit)) }
             @for (number, value) in history {
                 div.interval-row {
                     span { "round " (number) }
