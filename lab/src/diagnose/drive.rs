@@ -12,6 +12,7 @@
 
 pub mod candidates;
 pub mod criteria;
+pub mod expected_noise;
 pub mod filter;
 pub mod fit;
 pub mod held_out;

@@ -22,8 +22,15 @@ const FASTEST_PER_ROW: f64 = 0.3;
 
 /// The narrowest gap that is tried, in steps of the encoder, the factor to the next, and the widest, as a part of the travel.
 const NARROWEST_GAP: f64 = 2.0;
-const GAP_FACTOR: f64 = 4.0;
-const WIDEST_GAP: f64 = 0.01;
+const GAP_FACTOR: f64 = 1.25;
+const WIDEST_GAP: f64 = 0.05;
+
+/// So many gaps that follow each other are a band, of which the likeliest is searched from.
+const GAPS_OF_BAND: usize = 6;
+
+/// Damping ratios of a link's swing to begin with: a load that bounces in its play and one that stays where it strikes.
+const PLAY_DAMPING: [f64; 3] = [0.05, 0.2, 0.8];
+const COMPLIANCE_DAMPING: f64 = 0.05;
 
 /// Density of the disturbance to begin with, over that of the law without the link. With that law's own, the filter follows every row
 /// of the encoder whatever the link, and the likelihood has a maximum there; with a quiet one the link has to explain the motion.
@@ -40,7 +47,7 @@ const STEPS: usize = 6;
 pub fn found(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>], sides: &[Side]) -> Vec<Fit> {
     let trials = [liveliest(data, disturbance)];
     let short = Data { trials: &trials, ..*data };
-    let mut fits: Vec<Fit> = starts(base, sides).into_par_iter().map(|start| turn(&short, start)).collect();
+    let mut fits: Vec<Fit> = starts(&short, base, sides).into_par_iter().map(|start| turn(&short, start)).collect();
     fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     fits.truncate(2 * FOLLOWED);
     let followed = |mut fit: Fit| {
@@ -72,44 +79,65 @@ fn turn(data: &Data<'_>, mut fit: Fit) -> Fit {
 }
 
 /// Every link and play to begin with.
-fn starts(base: &Fit, sides: &[Side]) -> Vec<Fit> {
+fn starts(data: &Data<'_>, base: &Fit, sides: &[Side]) -> Vec<Fit> {
     let scales: &Scales = &base.model.scales;
-    let inertia = base.values[index::INERTIA];
-    // Of a link under two equal halves.
-    let link = |frequency_hz: f64| {
-        let swing = TAU * frequency_hz;
-        vec![0.25 * inertia * swing * swing, 0.025 * inertia * swing, 0.5]
-    };
+    let is_slow_enough = |hz: f64| hz * scales.period_s < FASTEST_PER_ROW;
     let mut all = Vec::new();
     for side in sides {
-        for hz in COMPLIANCE_HZ {
-            all.push((Term::Compliance(*side), hz, None, 1.0));
-            all.push((Term::Compliance(*side), hz, None, QUIET));
+        for hz in COMPLIANCE_HZ.into_iter().filter(|hz| is_slow_enough(*hz)) {
+            let own = link(base, hz, COMPLIANCE_DAMPING).to_vec();
+            all.push(begun(base, Term::Compliance(*side), own.clone(), 1.0));
+            all.push(begun(base, Term::Compliance(*side), own, QUIET));
         }
-        all.extend(gaps(scales).map(|gap| (Term::Play(*side), PLAY_HZ, Some(gap), QUIET)));
+        if is_slow_enough(PLAY_HZ) {
+            let gaps: Vec<f64> = gaps(scales).collect();
+            all.extend(
+                gaps.par_chunks(GAPS_OF_BAND)
+                    .filter_map(|band| likeliest_play(data, base, *side, band))
+                    .collect::<Vec<_>>(),
+            );
+        }
     }
-    let is_slow_enough = |hz: &f64| *hz * scales.period_s < FASTEST_PER_ROW;
-    all.into_iter()
-        .filter(|(_, hz, ..)| is_slow_enough(hz))
-        .map(|(term, hz, gap, density)| {
-            let own = link(hz).into_iter().chain(gap);
-            let mut fit = base.clone();
-            fit.noise.ln_disturbance += density.ln();
-            if density < 1.0 {
-                // The delay that a rigid law needed stands for the link.
-                fit.values[index::DELAY] = 0.0;
-            }
-            fit.values.extend(own);
-            fit.model.terms.push(term);
-            fit
-        })
-        .collect()
+    all
 }
 
-/// Gaps to begin with, m or rad: a basin of the likelihood is some factor wide, and a gap may be one step of the encoder or thousands.
+/// The likeliest play of a band of gaps, as it begins. A load that flies across its play strikes at another row for another gap, so the
+/// likelihood has a maximum every few tenths of the gap, and a search ends in the nearest.
+fn likeliest_play(data: &Data<'_>, base: &Fit, side: Side, band: &[f64]) -> Option<Fit> {
+    let begun = |gap: f64, damping: f64| {
+        let own = link(base, PLAY_HZ, damping).into_iter().chain([gap]).collect();
+        let mut fit = begun(base, Term::Play(side), own, QUIET);
+        fit.log_likelihood = data.log_likelihood(&fit.model, &fit.values, &fit.noise).0;
+        fit
+    };
+    let all = band.iter().flat_map(|gap| PLAY_DAMPING.map(|damping| begun(*gap, damping)));
+    all.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))
+}
+
+/// Stiffness, damping and share of the load of a link between two equal halves that swings at `frequency_hz` under all of the inertia.
+fn link(base: &Fit, frequency_hz: f64, damping_ratio: f64) -> [f64; 3] {
+    let inertia = base.values[index::INERTIA];
+    let swing = TAU * frequency_hz;
+    [0.25 * inertia * swing * swing, 0.5 * damping_ratio * inertia * swing, 0.5]
+}
+
+/// `base` with `term` and its `own` values, and its disturbance at `density` of what it was.
+fn begun(base: &Fit, term: Term, own: Vec<f64>, density: f64) -> Fit {
+    let mut fit = base.clone();
+    fit.noise.ln_disturbance += density.ln();
+    if density < 1.0 {
+        // The delay that a rigid law needed stands for the link.
+        fit.values[index::DELAY] = 0.0;
+    }
+    fit.values.extend(own);
+    fit.model.terms.push(term);
+    fit
+}
+
+/// Gaps to begin with, m or rad: a gap may be one step of the encoder or thousands.
 fn gaps(scales: &Scales) -> impl Iterator<Item = f64> {
     let narrowest = NARROWEST_GAP * scales.resolution;
-    let widest = (WIDEST_GAP * scales.travel).max(GAP_FACTOR.powi(2) * narrowest);
+    let widest = (WIDEST_GAP * scales.travel).max(16.0 * narrowest);
     std::iter::successors(Some(narrowest), |gap| Some(gap * GAP_FACTOR)).take_while(move |gap| *gap <= widest)
 }
 

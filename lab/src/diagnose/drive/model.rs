@@ -98,6 +98,12 @@ impl Model {
         names
     }
 
+    /// Whether it has two bodies.
+    #[must_use]
+    pub fn has_link(&self) -> bool {
+        self.terms.iter().any(Term::is_link)
+    }
+
     /// Whether a term of that name is in it.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {

@@ -1,19 +1,15 @@
 //! What the recordings say of a drive: the law, its evidence, what else would do, and what is left.
 
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha12Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::criteria::{
     COMPARISONS, CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_THROUGHOUT, MOST_LEFT, UNKNOWN_PART_OF_EFFORT,
 };
-use super::filter::innovations;
+use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::{Data, Fit};
 use super::held_out::{Folds, HeldOut, missing_forces, rms};
 use super::interval::intervals;
 use super::law::{DriveLaw, Side};
 use super::model::index;
-use super::noise::{Noise, robust_white_variance, white_variance};
+use super::noise::Noise;
 use super::nominal::{LOWEST_BAND_HZ, NominalDrive, encoder_variance, missing_under, nominal_fit, scales};
 use super::outside_force::{Stretch, outside_forces};
 use super::selection::{Chosen, Search};
@@ -131,9 +127,9 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     let given = missing_forces(data, &as_given(search), &common);
     let refitted = folds.held_out(data, &search.nominal, &common);
     let (fit, improved, named) = believed(search, &folds, &common, chosen.fit.clone());
-    let expected_noise = expected_noise(search, &fit, &common, seed);
+    let expected_noise = expected_noise(data, &fit, &common, seed);
     let spread = intervals(data, &fit, &improved.values);
-    let recorded_noise = expected_noise.hypot(effort_noise(search, &fit, &common, seed));
+    let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed));
     let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], recorded_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
@@ -266,7 +262,7 @@ const CURVE_KNOTS: usize = 24;
 /// Whether a load by position of no law takes most of what the terms of `fit` leave, where that is much: then they are not all of it.
 fn a_curve_does_better(search: &Search<'_>, fit: &Fit) -> bool {
     let left = search.unexplained(fit);
-    if fit.model.terms.iter().any(Term::is_link) || left < MOST_LEFT * 0.5 * search.unexplained(&search.nominal) {
+    if fit.model.has_link() || left < MOST_LEFT * 0.5 * search.unexplained(&search.nominal) {
         return false;
     }
     let scales = &search.scales;
@@ -278,59 +274,10 @@ fn a_curve_does_better(search: &Search<'_>, fit: &Fit) -> bool {
     search.unexplained(&search.polished(&start)) < CURVE_PART * left
 }
 
-/// Missing force that the sensors' noise alone would show: the encoder's and the force sensor's, drawn and passed through the same
-/// filter and smoother.
-fn expected_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> f64 {
-    let mut draw = Draw::new(seed);
-    passed(search, fit, common, |trial| {
-        let mut noise = trial.clone();
-        noise.position = draw.white(fit.noise.encoder(), trial.len());
-        noise.effort.fill(0.0);
-        if let Some(force) = &mut noise.force {
-            *force = draw.white(white_variance(force), force.len());
-        }
-        noise
-    })
-}
-
-/// The same of white noise in the recorded effort, which may be its sensor's: what is left below it is not told as physics. Where a
-/// controller commands such noise it moves the drive and nothing of it is left; so it is no part of the expected noise.
-fn effort_noise(search: &Search<'_>, fit: &Fit, common: &Noise, seed: u64) -> f64 {
-    let mut draw = Draw::new(seed);
-    passed(search, fit, common, |trial| {
-        let mut noise = trial.clone();
-        noise.position.fill(0.0);
-        noise.effort = draw.white(robust_white_variance(&trial.effort), trial.effort.len());
-        noise.force = None;
-        noise
-    })
-}
-
-/// Missing force of what `noise` makes of each trial under the rigid law of `fit`, N or N m in root mean square.
-fn passed(search: &Search<'_>, fit: &Fit, common: &Noise, noise: impl FnMut(&DriveTrial) -> DriveTrial) -> f64 {
-    let law = DriveLaw::nominal(fit.values[index::INERTIA], fit.values[index::VISCOUS], 0.0);
-    let drawn = search.data.trials.iter().map(noise);
-    rms(&drawn.map(|trial| innovations(&trial, &law, common, true).disturbance).collect::<Vec<_>>())
-}
-
-/// Draws of white Gaussian noise.
-struct Draw(ChaCha12Rng);
-
-impl Draw {
-    fn new(seed: u64) -> Self {
-        Self(ChaCha12Rng::seed_from_u64(seed))
-    }
-
-    fn white(&mut self, variance: f64, count: usize) -> Vec<f64> {
-        let deviation = variance.sqrt();
-        (0..count).map(|_| deviation * Distribution::<f64>::sample(&StandardNormal, &mut self.0)).collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::drive::testing::TestDrive;
+    use crate::diagnose::drive::testing::{TestDrive, TestLink};
 
     fn identified(drive: &TestDrive, inertia: f64, viscous: f64, seed: u64) -> Outcome {
         let rig =
@@ -347,6 +294,34 @@ mod tests {
         let left = rms(&outcome.missing[1]);
         // Both are root mean squares of 12 000 rows in a band of some hertz: a tenth is three deviations.
         assert!((left / outcome.expected_noise - 1.0).abs() < 0.2, "{left} {}", outcome.expected_noise);
+    }
+
+    #[test]
+    fn noise_of_the_recorded_effort_is_no_physics() {
+        let outcome = identified(&TestDrive { effort_noise: 0.3, ..TestDrive::PLAIN }, 0.8, 4.0, 51);
+        assert_eq!(outcome.verdict, Verdict::NoMismatch);
+        // It is there: more than encoder and force sensor leave.
+        assert!(rms(&outcome.missing[1]) > 1.5 * outcome.expected_noise);
+    }
+
+    #[test]
+    fn a_play_of_two_hundred_encoder_steps_is_named_with_its_gap() {
+        let link = TestLink { stiffness: 4e4, damping: 30.0, play: 2e-3, load_share: 0.5 };
+        let outcome = identified(&TestDrive { link: Some(link), ..TestDrive::PLAIN }, 0.75, 5.0, 61);
+        assert_eq!(outcome.chosen.model.names(), ["backlash"]);
+        let gap = outcome.chosen.values[outcome.chosen.model.values_of(0).start + 3];
+        // A tenth of the gap is twenty steps of the encoder.
+        assert!((gap / 2e-3 - 1.0).abs() < 0.1, "{gap}");
+        // What it leaves is what the encoder leaves: a link is measured as a rigid law is.
+        let left = rms(&outcome.missing[2]);
+        assert!((left / outcome.expected_noise - 1.0).abs() < 0.3, "{left} {}", outcome.expected_noise);
+    }
+
+    #[test]
+    fn friction_and_a_link_that_hide_each_other_are_named_together() {
+        let link = TestLink { stiffness: 1200.0, damping: 1.3, play: 0.0, load_share: 0.5 };
+        let outcome = identified(&TestDrive { coulomb: 0.4, link: Some(link), ..TestDrive::PLAIN }, 0.75, 5.0, 71);
+        assert_eq!(outcome.chosen.model.names(), ["coulomb_friction", "transmission_compliance"]);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::filter::innovations;
 use super::fit::{Data, Effort, Fit, fit};
 use super::law::Side;
 use super::links;
-use super::term::{Scales, Term};
+use super::term::Scales;
 use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
@@ -124,13 +124,10 @@ impl Search<'_> {
                 quick.truncate(POLISHED);
                 grown.extend(quick.iter().map(|quick| self.polished(quick)));
             }
-            let unexplained = |fit: &Fit| self.unexplained(fit);
-            let least = grown.iter().filter(|fit| !is_at_end(fit)).map(unexplained).fold(unexplained(&best), f64::min);
-            let has_link = |fit: &Fit| fit.model.terms.iter().any(Term::is_link);
-            let rigid = beam.iter().find(|fit| !has_link(fit)).filter(|_| !has_link(&best));
+            let rigid = beam.iter().find(|fit| !fit.model.has_link()).filter(|_| !best.model.has_link());
             if let Some(rigid) = rigid
                 && link_searches < LINK_SEARCHES
-                && least > LINK_PART * unexplained(&self.nominal)
+                && self.leaves_much(&grown, &best)
             {
                 say("the drive: two bodies");
                 link_searches += 1;
@@ -148,16 +145,8 @@ impl Search<'_> {
                 None if !is_waiting && grown.iter().any(|fit| self.is_likelier(fit, &best)) => is_waiting = true,
                 None => break,
             }
-            // Beside a link, whose own gain friction hides, a term has to be tried before either is given up.
-            let hidden = grown.iter().find(|fit| has_link(fit)).filter(|_| is_waiting).cloned();
-            beam = grown.into_iter().take(BEAM).collect();
-            beam.extend(hidden.filter(|link| !beam.iter().any(|fit| fit.model == link.model)));
-            // What was chosen stays in it, however likely sets are that were not worth it.
-            if !is_waiting && beam.iter().all(|fit| fit.model != best.model) {
-                beam.truncate(BEAM - 1);
-                beam.push(best.clone());
-            }
-            if unexplained(&best) < NEGLIGIBLE_PART * unexplained(&self.nominal) {
+            beam = next_beam(grown, &best, is_waiting);
+            if self.unexplained(&best) < NEGLIGIBLE_PART * self.unexplained(&self.nominal) {
                 break;
             }
         }
@@ -166,11 +155,18 @@ impl Search<'_> {
         Chosen { fit, sets: distinct(sets) }
     }
 
+    /// Whether the best of `grown`, or `best`, leaves so much that a link is looked for.
+    fn leaves_much(&self, grown: &[Fit], best: &Fit) -> bool {
+        let all = grown.iter().filter(|fit| !is_at_end(fit)).chain([best]);
+        let least = all.map(|fit| self.unexplained(fit)).fold(f64::INFINITY, f64::min);
+        least > LINK_PART * self.unexplained(&self.nominal)
+    }
+
     /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
     fn quickly_grown(&self, base: &Fit) -> Vec<Fit> {
         let disturbance = self.disturbance(base);
         let candidates = one_body(&self.data, base, &disturbance);
-        if base.model.terms.iter().any(Term::is_link) {
+        if base.model.has_link() {
             let trials = [links::liveliest(&self.data, &disturbance)];
             return tried(&Data { trials: &trials, ..self.data }, base, candidates);
         }
@@ -192,7 +188,7 @@ impl Search<'_> {
     /// `start` fitted in full.
     #[must_use]
     pub fn polished(&self, start: &Fit) -> Fit {
-        let effort = if start.model.terms.iter().any(Term::is_link) { Effort::LINKED } else { Effort::FULL };
+        let effort = if start.model.has_link() { Effort::LINKED } else { Effort::FULL };
         fit(&self.data, &start.model, &start.values, start.noise, effort)
     }
 
@@ -219,6 +215,22 @@ impl Search<'_> {
 
 fn is_at_end(fit: &Fit) -> bool {
     fit.model.is_at_end(&fit.values)
+}
+
+/// What the next round grows from: the likeliest of `grown`, and what must not be crowded out.
+fn next_beam(grown: Vec<Fit>, best: &Fit, is_waiting: bool) -> Vec<Fit> {
+    let is_in = |beam: &[Fit], set: &Fit| beam.iter().any(|fit| fit.model == set.model);
+    // Friction hides a link's own gain: it is tried beside the likeliest link before that is given up.
+    let link = grown.iter().find(|fit| is_waiting && fit.model.has_link()).cloned();
+    let mut beam: Vec<Fit> = grown.into_iter().take(BEAM).collect();
+    if is_waiting {
+        beam.extend(link.filter(|link| !is_in(&beam, link)));
+    } else if !is_in(&beam, best) {
+        // What was chosen stays, however likely sets are that were not worth it.
+        beam.truncate(BEAM - 1);
+        beam.push(best.clone());
+    }
+    beam
 }
 
 /// The sets, the likeliest first, each set of names once.

@@ -20,11 +20,37 @@ pub struct TestDrive {
     pub disturbance: f64,
     /// m, deviation of the encoder's white noise.
     pub encoder: f64,
+    /// N, deviation of white noise that is recorded with the effort and does not drive.
+    pub effort_noise: f64,
+    /// What gives between motor, where the encoder is, and load.
+    pub link: Option<TestLink>,
+}
+
+/// A spring and damper with play between motor and load.
+#[derive(Clone, Copy)]
+pub struct TestLink {
+    /// N/m
+    pub stiffness: f64,
+    /// N s/m
+    pub damping: f64,
+    /// m, from one side to the other.
+    pub play: f64,
+    /// Part of the mass that is the load's.
+    pub load_share: f64,
 }
 
 impl TestDrive {
     /// 0.8 kg, 4 N s/m and an encoder of 5 um.
-    pub const PLAIN: Self = Self { mass: 0.8, viscous: 4.0, coulomb: 0.0, load: 0.0, disturbance: 0.0, encoder: 5e-6 };
+    pub const PLAIN: Self = Self {
+        mass: 0.8,
+        viscous: 4.0,
+        coulomb: 0.0,
+        load: 0.0,
+        disturbance: 0.0,
+        encoder: 5e-6,
+        effort_noise: 0.0,
+        link: None,
+    };
 
     /// `seconds` at 1 kHz along three sines, drawn from `seed`.
     pub fn trial(&self, seconds: f64, seed: u64) -> DriveTrial {
@@ -39,6 +65,7 @@ impl TestDrive {
             sine(0.02, 0.6, phases[0]) + sine(0.005, 1.7, phases[1]) + sine(0.002, 5.1, phases[2])
         };
         let (mut x, mut v) = (reference(0.0), 0.0);
+        let (mut load_x, mut load_v) = (x, v);
         let (mut time, mut position, mut effort) = (Vec::new(), Vec::new(), Vec::new());
         for row in 0..rows {
             let t = row as f64 * period;
@@ -46,11 +73,21 @@ impl TestDrive {
             let u = 900.0 * (reference(t) - x) + 38.0 * (rate - v);
             time.push(t);
             position.push(x + self.encoder * normal());
-            effort.push(u);
+            effort.push(if self.effort_noise > 0.0 { u + self.effort_noise * normal() } else { u });
             for _ in 0..STEPS {
                 let white = (self.disturbance / step).sqrt() * normal();
-                let free = v + step * (u - self.viscous * v - self.load + white) / self.mass;
-                let held = step * self.coulomb / self.mass;
+                let (passed, motor) = self.link.map_or((0.0, self.mass), |link| {
+                    let apart = x - load_x;
+                    let strain = apart - apart.clamp(-0.5 * link.play, 0.5 * link.play);
+                    let damping = if strain == 0.0 { 0.0 } else { link.damping * (v - load_v) };
+                    (link.stiffness * strain + damping, (1.0 - link.load_share) * self.mass)
+                });
+                if let Some(link) = self.link {
+                    load_v += step * passed / (link.load_share * self.mass);
+                    load_x += step * load_v;
+                }
+                let free = v + step * (u - passed - self.viscous * v - self.load + white) / motor;
+                let held = step * self.coulomb / motor;
                 v = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
                 x += step * v;
             }
