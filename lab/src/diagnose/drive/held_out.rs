@@ -96,6 +96,7 @@ mod tests {
             travel: 0.05,
             lowest: -0.025,
             period_s: 1e-3,
+            latest_effort_s: 0.02,
             duration_s: 3.0,
             inertia: 0.8,
             viscous: 4.0,

@@ -20,7 +20,7 @@ impl Inputs {
         let held = Integral::held(&trial.source_time, trial.effort.iter().map(|effort| clipped(*effort)));
         let mut effort = held.means(&trial.time, -law.effort_delay_s);
         if law.effort_lag_s > 0.0 {
-            first_order_lag(&mut effort, &trial.time, law.effort_lag_s);
+            held.lag(&mut effort, &trial.time, -law.effort_delay_s, law.effort_lag_s);
         }
         let force = trial.force.as_ref().map_or_else(
             || vec![0.0; trial.len()],
@@ -31,17 +31,6 @@ impl Inputs {
             },
         );
         Self { effort, force }
-    }
-}
-
-/// Passes `means` (of each interval) through a first-order lag, exactly: du/dt = (input - u) / lag.
-fn first_order_lag(means: &mut [f64], time: &[f64], lag_s: f64) {
-    let mut state = means.get(1).copied().unwrap_or(0.0);
-    for row in 1..means.len() {
-        let step = time[row] - time[row - 1];
-        let (input, decay) = (means[row], (-step / lag_s).exp());
-        means[row] = input + (state - input) * (lag_s / step) * (1.0 - decay);
-        state = input + (state - input) * decay;
     }
 }
 
@@ -73,8 +62,8 @@ impl<'a> Integral<'a> {
         Self { time, values, total, held }
     }
 
-    /// The integral up to `at`, `row` being a row near it: signals are constant before the first and after the last row.
-    fn up_to(&self, at: f64, row: &mut usize) -> f64 {
+    /// Moves `row` to the last one that is not after `at`, or to the first.
+    fn seek(&self, at: f64, row: &mut usize) {
         let last = self.time.len() - 1;
         while *row < last && self.time[*row + 1] <= at {
             *row += 1;
@@ -82,6 +71,12 @@ impl<'a> Integral<'a> {
         while *row > 0 && self.time[*row] > at {
             *row -= 1;
         }
+    }
+
+    /// The integral up to `at`, `row` being a row near it: signals are constant before the first and after the last row.
+    fn up_to(&self, at: f64, row: &mut usize) -> f64 {
+        self.seek(at, row);
+        let last = self.time.len() - 1;
         let since = at - self.time[*row];
         let (level, next) = (self.values[*row], self.values[(*row + 1).min(last)]);
         if self.held || since <= 0.0 || *row == last {
@@ -102,6 +97,27 @@ impl<'a> Integral<'a> {
             before = after;
         }
         means
+    }
+
+    /// Turns `means`, of a held signal over each interval of `rows` moved by `shift`, into those of what follows it by a first-order
+    /// lag, exactly: from lag du/dt = input - u the integral of u is that of the input less `lag` times the change of u.
+    fn lag(&self, means: &mut [f64], rows: &[f64], shift: f64, lag_s: f64) {
+        let mut follows = vec![self.values.first().copied().unwrap_or(0.0); self.time.len()];
+        let after = |input: f64, before: f64, since: f64| input + (before - input) * (-since / lag_s).exp();
+        for row in 1..follows.len() {
+            follows[row] = after(self.values[row - 1], follows[row - 1], self.time[row] - self.time[row - 1]);
+        }
+        let mut near = 0;
+        let mut at = |instant: f64| {
+            self.seek(instant, &mut near);
+            after(self.values[near], follows[near], (instant - self.time[near]).max(0.0))
+        };
+        let mut before = rows.first().map_or(0.0, |first| at(first + shift));
+        for row in 1..rows.len() {
+            let now = at(rows[row] + shift);
+            means[row] -= lag_s * (now - before) / (rows[row] - rows[row - 1]);
+            before = now;
+        }
     }
 }
 
@@ -126,16 +142,41 @@ mod tests {
         assert!((sampled.means(&[0.5, 1.5], 0.0)[1] - 2.0).abs() < 1e-15);
     }
 
+    /// 3 N for half a second, then nothing, recorded each 10 ms.
+    fn pulse() -> (Vec<f64>, Vec<f64>) {
+        let time = (0..200).map(|row| 0.01 * f64::from(row)).collect();
+        (time, (0..200).map(|row| if row < 50 { 3.0 } else { 0.0 }).collect())
+    }
+
     #[test]
     fn a_lag_loses_nothing_of_a_constant_and_all_of_a_pulse_after_a_long_time() {
-        let time: Vec<f64> = (0..200).map(|row| 0.01 * f64::from(row)).collect();
-        let mut means: Vec<f64> = (0..200).map(|row| if row < 50 { 3.0 } else { 0.0 }).collect();
-        first_order_lag(&mut means, &time, 0.05);
+        let (time, values) = pulse();
+        let held = Integral::held(&time, values.into_iter());
+        let mut means = held.means(&time, 0.0);
+        held.lag(&mut means, &time, 0.0, 0.05);
         assert!((means[49] - 3.0).abs() < 1e-12);
         // After 1.5 s, thirty time constants, e^-30 of it is left.
         assert!(means[199].abs() < 1e-12);
-        let lost: f64 = means[50..].iter().sum::<f64>() * 0.01;
+        let lost: f64 = means[51..].iter().sum::<f64>() * 0.01;
         // What a first-order lag gives late is its time constant times the step.
         assert!((lost - 3.0 * 0.05).abs() < 1e-10, "{lost}");
+    }
+
+    #[test]
+    fn a_lag_between_few_encoder_rows_is_that_of_every_recorded_row() {
+        let time: Vec<f64> = (0..40).map(|row| 0.01 * f64::from(row)).collect();
+        let values = (0..40).map(|row| f64::from((row * row * 7) % 11));
+        let held = Integral::held(&time, values);
+        let lagged = |rows: &[f64]| {
+            let mut means = held.means(rows, -0.004);
+            held.lag(&mut means, rows, -0.004, 0.013);
+            means
+        };
+        let every_fourth: Vec<f64> = time.iter().step_by(4).copied().collect();
+        let (all, few) = (lagged(&time), lagged(&every_fourth));
+        for row in 1..few.len() {
+            let mean = all[4 * row - 3..=4 * row].iter().sum::<f64>() / 4.0;
+            assert!((few[row] - mean).abs() < 1e-12, "{} {mean}", few[row]);
+        }
     }
 }

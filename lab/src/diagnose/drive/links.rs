@@ -34,7 +34,7 @@ const COMPLIANCE_DAMPING: f64 = 0.05;
 
 /// Density of the disturbance to begin with, over that of the law without the link. With that law's own, the filter follows every row
 /// of the encoder whatever the link, and the likelihood has a maximum there; with a quiet one the link has to explain the motion.
-/// Chosen; a factor of ten either way finds the same plays.
+/// Chosen; with all of it a play of 2 mm is a weak link in the test of `outcome`.
 const QUIET: f64 = 1e-3;
 
 /// Starts that are followed to their end, and the turns that takes.

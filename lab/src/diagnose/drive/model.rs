@@ -29,21 +29,19 @@ pub const NOMINAL: usize = 3;
 /// a weight explains a pendulum by an inertia that hardly moves.
 const INERTIA_FACTOR: f64 = 5.0;
 
-/// Latest effort that counts as a late clock, in rows and in seconds: a fieldbus takes some cycles.
-const LATEST_ROWS: f64 = 20.0;
-const LATEST_S: f64 = 0.02;
-
 impl Model {
     /// The ranges of all values.
     #[must_use]
     pub fn ranges(&self) -> Vec<Range> {
         let scales = &self.scales;
         let viscous = (scales.effort / scales.speed).max(scales.viscous);
-        let latest = (LATEST_ROWS * scales.period_s).max(LATEST_S).min(3.0 * LATEST_ROWS * scales.period_s);
+        // A lag and a late recording of the same length are hardly told apart: beside a lag the effort acts as it is recorded.
+        let (earliest, latest) =
+            if self.has("effort_lag") { (0.0, 0.0) } else { (-scales.period_s, scales.latest_effort_s) };
         let mut ranges = vec![
             Range::relative(scales.inertia / INERTIA_FACTOR, scales.inertia * INERTIA_FACTOR),
             Range::absolute(0.0, f64::INFINITY, 0.1 * viscous),
-            Range::absolute(-scales.period_s, latest, 0.3 * scales.period_s),
+            Range::absolute(earliest, latest, 0.3 * scales.period_s),
         ];
         self.terms.iter().for_each(|term| ranges.extend(term.ranges(scales)));
         ranges

@@ -80,6 +80,7 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
         travel,
         lowest,
         period_s: trials[0].period_s,
+        latest_effort_s: latest_effort_s(trials[0].period_s),
         duration_s: largest(&DriveTrial::duration_s),
         inertia: rig.inertia,
         viscous: rig.viscous,
@@ -111,6 +112,35 @@ pub fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
 
 /// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
 const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
+
+/// Latest effort that counts as a late recording, in rows and in seconds: a fieldbus takes some cycles.
+const LATEST_ROWS: f64 = 20.0;
+const LATEST_S: f64 = 0.02;
+
+fn latest_effort_s(period_s: f64) -> f64 {
+    (LATEST_ROWS * period_s).max(LATEST_S).min(3.0 * LATEST_ROWS * period_s)
+}
+
+/// `nominal` with an effort that acts within a recorded row of its own, and the same with a first-order lag, where the effort is later
+/// than that; `None` where it is not.
+#[must_use]
+pub fn punctual_and_lagged(
+    data: &Data<'_>,
+    rig: &NominalDrive,
+    nominal: &Fit,
+    encoder_variance: f64,
+) -> Option<[Fit; 2]> {
+    let recorded = data.trials[0].recorded_period_s();
+    let delay = nominal.values[index::DELAY];
+    if delay <= recorded || nominal.model.has("effort_lag") {
+        return None;
+    }
+    let scales = Scales { latest_effort_s: recorded, ..nominal.model.scales };
+    let punctual = nominal_fit(data, rig, scales, encoder_variance)?;
+    let start = [nominal.values.as_slice(), &[delay]].concat();
+    let lagged = fit(data, &punctual.model.with(Term::EffortLag), &start, nominal.noise, Effort::FULL);
+    Some([punctual, lagged])
+}
 
 /// The law that `rig` states, with the values of its effects.
 fn law_of(rig: &NominalDrive, scales: Scales) -> (Model, Vec<f64>) {

@@ -10,7 +10,9 @@ use super::interval::intervals;
 use super::law::{DriveLaw, Side};
 use super::model::index;
 use super::noise::Noise;
-use super::nominal::{LOWEST_BAND_HZ, NominalDrive, encoder_variance, missing_under, nominal_fit, scales};
+use super::nominal::{
+    LOWEST_BAND_HZ, NominalDrive, encoder_variance, missing_under, nominal_fit, punctual_and_lagged, scales,
+};
 use super::outside_force::{Stretch, outside_forces};
 use super::selection::{Chosen, Search};
 use super::term::Term;
@@ -102,15 +104,25 @@ fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, 
     let data = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
     say("the drive: nominal values");
     let nominal = nominal_fit(&data, rig, scales, encoder_variance)?;
-    let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
-    let band_hz = crossing.clamp(LOWEST_BAND_HZ.min(0.1 / scales.period_s), 0.4 / scales.period_s);
-    let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
-    let search = Search { data, scales, nominal, band_hz, sides };
+    // A recording may be late by some rows. Where a lag of the drive is worth its value beside a punctual recording, it is the lag.
+    let lag = punctual_and_lagged(&data, rig, &nominal, encoder_variance).and_then(|[punctual, lagged]| {
+        let search = search_from(data, rig, punctual);
+        search.is_worth(&lagged, &search.nominal).then_some(search)
+    });
+    let search = lag.unwrap_or_else(|| search_from(data, rig, nominal));
     let chosen = search.run(say);
     say("the drive: what is left");
     let mut outcome = judged(&search, chosen, seed);
     outcome.trials.clone_from(&trials);
     Some(outcome)
+}
+
+fn search_from<'a>(data: Data<'a>, rig: &NominalDrive, nominal: Fit) -> Search<'a> {
+    let scales = nominal.model.scales;
+    let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
+    let band_hz = crossing.clamp(LOWEST_BAND_HZ.min(0.1 / scales.period_s), 0.4 / scales.period_s);
+    let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
+    Search { data, scales, nominal, band_hz, sides }
 }
 
 /// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.
@@ -302,6 +314,22 @@ mod tests {
         assert_eq!(outcome.verdict, Verdict::NoMismatch);
         // It is there: more than encoder and force sensor leave.
         assert!(rms(&outcome.missing[1]) > 1.5 * outcome.expected_noise);
+    }
+
+    #[test]
+    fn a_lag_of_two_rows_is_no_late_recording() {
+        let outcome = identified(&TestDrive { effort_lag_s: 2e-3, ..TestDrive::PLAIN }, 0.75, 5.0, 81);
+        assert_eq!(outcome.chosen.model.names(), ["effort_lag"]);
+        let lag = outcome.chosen.values[outcome.chosen.model.values_of(0).start];
+        assert!((lag / 2e-3 - 1.0).abs() < 0.02, "{lag}");
+    }
+
+    #[test]
+    fn a_recording_that_is_late_by_part_of_a_row_is_no_lag() {
+        let outcome = identified(&TestDrive { effort_late_s: 0.6e-3, ..TestDrive::PLAIN }, 0.8, 4.0, 91);
+        assert_eq!(outcome.verdict, Verdict::NoMismatch);
+        // Half a step of the test's own simulation, which updates the velocity first, is 20 us.
+        assert!((outcome.chosen.values[index::DELAY] - 0.6e-3).abs() < 0.025e-3);
     }
 
     #[test]

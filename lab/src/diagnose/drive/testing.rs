@@ -22,6 +22,10 @@ pub struct TestDrive {
     pub encoder: f64,
     /// N, deviation of white noise that is recorded with the effort and does not drive.
     pub effort_noise: f64,
+    /// s, first-order lag of the effort behind what is recorded.
+    pub effort_lag_s: f64,
+    /// s, less than a row: by how much the effort acts later than it is recorded.
+    pub effort_late_s: f64,
     /// What gives between motor, where the encoder is, and load.
     pub link: Option<TestLink>,
 }
@@ -49,6 +53,8 @@ impl TestDrive {
         disturbance: 0.0,
         encoder: 5e-6,
         effort_noise: 0.0,
+        effort_lag_s: 0.0,
+        effort_late_s: 0.0,
         link: None,
     };
 
@@ -66,6 +72,7 @@ impl TestDrive {
         };
         let (mut x, mut v) = (reference(0.0), 0.0);
         let (mut load_x, mut load_v) = (x, v);
+        let (mut command, mut drives) = (0.0, 0.0);
         let (mut time, mut position, mut effort) = (Vec::new(), Vec::new(), Vec::new());
         for row in 0..rows {
             let t = row as f64 * period;
@@ -74,7 +81,15 @@ impl TestDrive {
             time.push(t);
             position.push(x + self.encoder * normal());
             effort.push(if self.effort_noise > 0.0 { u + self.effort_noise * normal() } else { u });
-            for _ in 0..STEPS {
+            let before = command;
+            command = u;
+            for part in 0..STEPS {
+                let acts = if (part as f64 + 0.5) * step < self.effort_late_s { before } else { command };
+                drives = if self.effort_lag_s > 0.0 {
+                    drives + (acts - drives) * (1.0 - (-step / self.effort_lag_s).exp())
+                } else {
+                    acts
+                };
                 let white = (self.disturbance / step).sqrt() * normal();
                 let (passed, motor) = self.link.map_or((0.0, self.mass), |link| {
                     let apart = x - load_x;
@@ -86,7 +101,7 @@ impl TestDrive {
                     load_v += step * passed / (link.load_share * self.mass);
                     load_x += step * load_v;
                 }
-                let free = v + step * (u - passed - self.viscous * v - self.load + white) / motor;
+                let free = v + step * (drives - passed - self.viscous * v - self.load + white) / motor;
                 let held = step * self.coulomb / motor;
                 v = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
                 x += step * v;

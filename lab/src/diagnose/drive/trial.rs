@@ -47,6 +47,12 @@ impl DriveTrial {
         Self { name, time, position, restart, period_s, source_time, effort, force }
     }
 
+    /// Median time between recorded rows, s.
+    #[must_use]
+    pub fn recorded_period_s(&self) -> f64 {
+        median(self.source_time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(self.period_s)
+    }
+
     /// Encoder rows.
     #[must_use]
     pub fn len(&self) -> usize {
