@@ -33,7 +33,7 @@ pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
     let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
         // By the sensors alone: a weight holds what the refitted law leaves as well.
         let noise =
-            |variance: &f64| variance.is_finite().then_some(variance.sqrt()).unwrap_or(outcome.expected_noise) as f32;
+            |variance: &f64| (if variance.is_finite() { variance.sqrt() } else { outcome.expected_noise }) as f32;
         Trace {
             trial: trial.name.clone(),
             channel: CHANNEL,
