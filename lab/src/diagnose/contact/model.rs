@@ -246,7 +246,7 @@ impl ContactModel {
         if self.bilateral { self.scales.travel() } else { self.scales.depth }
     }
 
-    /// Whether the spring's force falls on the way in, by more than [`LEAST_FALL`] of its range: as over a click, or where a column
+    /// Whether the spring's force falls on the way in, by more than a fiftieth of its range: as over a click, or where a column
     /// buckles. A spring that hardens, softens or lies on another does not.
     #[must_use]
     pub fn has_falling_spring(&self, values: &[f64]) -> bool {
