@@ -116,6 +116,31 @@ fn a_maxwell_branch_relaxes_as_its_closed_form() {
     close(extra(2300) / extra(1500), (-0.8f64 / time).exp(), 1e-6, "what is left 0.8 s later");
 }
 
+/// On a straight spring a memory of the force is the memory of the depth, whatever its law of time.
+#[test]
+fn a_memory_that_multiplies_a_straight_spring_is_the_one_beside_it() {
+    let pairs = [
+        ("branch_stiffness_n_m = 150\nrelaxation_time_s = 0.4", 150.0, "fading_ratio = RATIO\nrelaxation_time_s = 0.4"),
+        (
+            "memory_stiffness_n_m = 80\nexponent = 0.3\nreference_time_s = 0.5",
+            80.0,
+            "memory_ratio = RATIO\nexponent = 0.3\nreference_time_s = 0.5",
+        ),
+    ];
+    for (beside, stiffness, multiplied) in pairs {
+        let multiplied = multiplied.replace("RATIO", &format!("{:?}", stiffness / STIFFNESS));
+        let [one, other, none] = [Some(beside.to_owned()), Some(multiplied), None].map(|values| {
+            let table =
+                values.map_or(String::new(), |values| format!("[[effect]]\nname = \"stress_relaxation\"\n{values}\n"));
+            run(&with(&rig(REFERENCE, false), &table))
+        });
+        let (one, other, none) = (force(&one), force(&other), force(&none));
+        assert!(apart(one, none) > 0.1, "{beside}");
+        // Sums of some thousand steps, each rounded.
+        assert!(apart(one, other) < 1e-10 * largest(one), "{beside}: {:.3e} N apart", apart(one, other));
+    }
+}
+
 #[test]
 fn a_dent_stays_and_is_as_deep_as_it_says() {
     let rig = with(&rig(REFERENCE, false), "[[effect]]\nname = \"plastic_set\"\nset_ratio = 0.4\n");
@@ -146,6 +171,21 @@ fn what_sticks_pulls_on_release_and_never_before() {
     }
     let least = force(&recording).iter().copied().fold(0.0, f64::min);
     close(least, -0.3, 1e-12, "greatest pull");
+}
+
+/// Within the surface what sticks pulls with the law that acts there, and not with the straight line of its stiffness.
+#[test]
+fn a_spring_that_sticks_pulls_with_its_own_law() {
+    let spring = "[[effect]]\nname = \"nonlinear_stiffness\"\nexponent = 2\nreference_depth_m = 0.006\n";
+    let adhesion = "[[effect]]\nname = \"adhesion\"\npull_off_force_n = 5\nrelease_height_m = 0.0001\n";
+    let recording = run(&with(&rig(REFERENCE, false), &format!("{spring}{adhesion}")));
+    let mut pulls = 0;
+    for (row, x, v) in inside(&rig(REFERENCE, false)).filter(|(_, _, v)| *v < 0.0) {
+        let expected = STIFFNESS * 6e-3 * (x / 6e-3).powi(2) + DAMPING * v;
+        close(force(&recording)[row], expected, 1e-12, "while leaving");
+        pulls += usize::from(expected < -0.01);
+    }
+    assert!(pulls > 5, "{pulls} rows of it");
 }
 
 #[test]

@@ -103,7 +103,12 @@ impl Effect for Adhesion {
             touch.force -= values[0];
             return;
         }
-        let stretched = touch.stiffness * touch.position + touch.damping * touch.velocity + touch.extra;
+        // Within the surface the law itself pulls, above it the neck as the spring would.
+        let stretched = if touch.position > 0.0 {
+            touch.borne()
+        } else {
+            touch.stiffness * touch.position + touch.damping * touch.velocity + touch.extra
+        };
         if form == 3 {
             touch.force = if touch.position > 0.0 {
                 touch.force.max(0.0) + stretched.min(0.0).max(-values[0])

@@ -71,6 +71,21 @@ static SPEC: EffectSpec = EffectSpec {
                 time("second_time"),
             ],
         },
+        Form {
+            name: "quasi_linear_power_law",
+            equation: "F = f(x) + B v + integral G(t - s) df(s), G(t) = memory_ratio (t / reference_time)^-exponent, by eight branches over six decades about reference_time",
+            parameters: &[
+                Parameter::new(
+                    "memory_ratio",
+                    RATIO,
+                    "what a step still keeps at reference_time beside what stays, over that",
+                    0.0,
+                    f64::INFINITY,
+                ),
+                Parameter::new("exponent", RATIO, "0 for a spring, 1 for a damper", 0.02, 0.95),
+                Parameter::fixed("reference_time", SECOND, "time at which the memory's ratio is stated"),
+            ],
+        },
     ],
     excited_by: "holds after a quick approach; two or more frequencies",
     resembles: &["channel_delay", "force_lag", "time_varying_stiffness", "plastic_set"],
