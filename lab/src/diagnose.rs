@@ -4,6 +4,7 @@
 //! drive by a model of its motion under the recorded effort ([`drive`]); each tells which effects are missing, what else would do, and
 //! what is left. [`report`] writes it down; [`experiment`] says which experiment would separate alternatives.
 
+pub mod acting_force;
 pub mod check;
 pub mod command;
 pub mod contact;
@@ -76,8 +77,8 @@ pub fn diagnose(
     let by_force = |rig: &Rig| touched(rig, origin, trials, &figures, say);
     let mut contact = if is_touching { by_force(&contact_rig(rig, &[]))? } else { None };
     let drive = drive::prepare::is_recorded(rig, trials).then(|| {
-        let zeroed = contact.as_ref().map(|contact| zeroed(contact, trials));
-        identified(rig, zeroed.as_deref().unwrap_or(trials), known, seed, say)
+        let acted = contact.as_ref().map(|contact| acting_force::as_it_acted(contact, trials));
+        identified(rig, acted.as_deref().unwrap_or(trials), known, seed, say)
     });
     let mut drive = drive.flatten();
     let found = drive.as_ref().map(drive_report::found).unwrap_or_default();
@@ -116,7 +117,7 @@ fn identified(
 }
 
 /// Effects of the force sensor that the drive tells better than the contact does: force and position alone show them as other values.
-const CARRIED_BY_THE_DRIVE: [&str; 2] = ["force_gain", "tool_inertia"];
+pub(crate) const CARRIED_BY_THE_DRIVE: [&str; 2] = ["force_gain", "tool_inertia"];
 
 /// The rig without its drive, which has a model of its own; `sensors` is what that found of the force sensor, and known to the contact.
 fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {
@@ -125,39 +126,6 @@ fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {
     contact.effects.retain(|table| effects::find(&table.name).is_none_or(|e| e.spec().place != Place::Drive));
     contact.effects.extend(sensors.iter().map(|effect| drive_report::table(effect, rig.coordinate)));
     contact
-}
-
-/// `trials` with the zero of the force sensor taken off, as the contact found it: the drive would take it for a load.
-fn zeroed(contact: &contact::outcome::Outcome, trials: &[Recording]) -> Vec<Recording> {
-    let fit = &contact.chosen;
-    let zeros: Vec<usize> = contact
-        .named
-        .iter()
-        .map(|named| named.at)
-        .filter(|at| ["force_bias", "force_drift"].contains(&fit.model.terms[*at].name()))
-        .collect();
-    let zeroed = |(number, trial): (usize, &Recording)| {
-        let mut trial = trial.clone();
-        let Some(force) = &mut trial.force else { return trial };
-        let step = (trial.time[trial.time.len() - 1] - trial.time[0]) / (trial.time.len() - 1) as f64;
-        for &at in &zeros {
-            let (term, first) = (fit.model.terms[at], fit.model.first_value_of(at));
-            let values = term.in_trial(&fit.values[first..first + fit.model.count_of(&term)], number);
-            // What the sensor shows of no force at all.
-            let (mut shown, acceleration) = (vec![0.0; force.len()], vec![0.0; force.len()]);
-            let mut reading = effects::Reading {
-                start: 0.0,
-                step,
-                filter_width: 0.0,
-                acceleration: &acceleration,
-                force: &mut shown,
-            };
-            term.effect.act_on_reading(term.form, &values, &mut reading);
-            force.iter_mut().zip(&shown).for_each(|(force, shown)| *force -= shown);
-        }
-        trial
-    };
-    if zeros.is_empty() { trials.to_vec() } else { trials.iter().enumerate().map(zeroed).collect() }
 }
 
 /// Whether the contact names `name`, or what a slow sensor and a late one have in common.

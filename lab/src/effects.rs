@@ -35,7 +35,7 @@ pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 pub struct EffectState([f64; STATE_SIZE]);
 
 /// Entries of an effect's state: as many as the effect with the most of them needs.
-const STATE_SIZE: usize = 12;
+const STATE_SIZE: usize = 25;
 
 impl std::ops::Deref for EffectState {
     type Target = [f64; STATE_SIZE];

@@ -1,6 +1,6 @@
 //! A trial as it was recorded: one column a channel, SI units.
 
-mod assemble;
+pub(crate) mod assemble;
 mod columns;
 mod computed_effort;
 mod csv_table;

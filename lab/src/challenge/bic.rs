@@ -69,7 +69,7 @@ fn select(data: &Data<'_>, mut best: Fit) -> Fit {
         let model = &best.model;
         let (stiffness, surface) = (best.values[index::STIFFNESS], best.values[index::SURFACE]);
         let excitation = model.scales.excitation(data.trials, stiffness, surface, model.bilateral);
-        let mut promises = Projection::of(data, &best).promises(&excitation);
+        let mut promises = Projection::of(data, &best).promises(&excitation, &|_| true);
         promises.truncate(MAX_FULL_FITS);
         let fits = promises.par_iter().map(|promise| {
             let start: Vec<f64> = best.values.iter().chain(&promise.values).copied().collect();

@@ -100,7 +100,7 @@ fn resampled(place: &str, series: Vec<Series<'_>>) -> Result<Vec<(Role, Vec<f64>
 }
 
 /// `values` at `wanted`, which lies within `clock`; both increase.
-fn interpolated(clock: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
+pub(crate) fn interpolated(clock: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
     let at = |instant: &f64| {
         let after = clock.partition_point(|time| time < instant);
         if clock.get(after) == Some(instant) {

@@ -59,9 +59,9 @@ impl<'a> Projection<'a> {
         Self { data, fit, base, free, tangent }
     }
 
-    /// The most promising start of each form of each effect that may stand beside the model's.
+    /// The most promising start of each form of each effect that is `asked_for` and may stand beside the model's.
     #[must_use]
-    pub fn promises(&self, excitation: &ExcitationStats) -> Vec<Promise> {
+    pub fn promises(&self, excitation: &ExcitationStats, asked_for: &(dyn Fn(&Term) -> bool + Sync)) -> Vec<Promise> {
         let model = &self.fit.model;
         let mut asked: Vec<(Term, Start)> = Vec::new();
         for effect in effects::ALL {
@@ -72,7 +72,7 @@ impl<'a> Projection<'a> {
             for form in 0..spec.forms.len() {
                 let term = Term { effect, form };
                 let needed = effect.builds_on(form);
-                if !needed.is_empty() && needed.iter().all(|name| model.times(name) == 0) {
+                if !asked_for(&term) || !needed.is_empty() && needed.iter().all(|name| model.times(name) == 0) {
                     continue;
                 }
                 let mut starts = effect.starts(form, excitation);

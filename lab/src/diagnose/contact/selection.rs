@@ -12,6 +12,7 @@ use super::own_values::{fewer_own_values, moved_values, own_values};
 use super::projection::{Projection, Promise};
 use super::tones::is_in_step;
 use crate::diagnose::model_comparison::vuong;
+use crate::diagnose::term::Term;
 
 /// What a search works on.
 pub struct Search<'a> {
@@ -145,7 +146,7 @@ impl Search<'_> {
     }
 
     /// Squares that are left, in nats under `rest`, with what each value has to earn.
-    fn price(&self, fit: &Fit, rest: &Rest) -> f64 {
+    pub(super) fn price(&self, fit: &Fit, rest: &Rest) -> f64 {
         0.5 / (rest.power * rest.correlated_rows) * fit.energy + self.price_of_value(rest) * free(fit) as f64
     }
 
@@ -155,6 +156,7 @@ impl Search<'_> {
         let mut best = self.nominal.clone();
         let mut beam = vec![best.clone()];
         let mut sets: Vec<Fit> = Vec::new();
+        let mut composed = Vec::new();
         let mut waiting = 0;
         for round in 0..MOST_TERMS + 1 {
             say(&format!("the contact: {round} effects and one more"));
@@ -163,6 +165,7 @@ impl Search<'_> {
                 let quick = self.grown(base);
                 grown.extend(self.polished(quick));
             }
+            grown.extend(self.composed(&grown, &mut composed));
             grown.retain(|fit| self.is_admissible(fit));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             let Some(least) = grown.first() else { break };
@@ -213,7 +216,7 @@ impl Search<'_> {
     fn grown(&self, base: &Fit) -> Vec<Fit> {
         let data = &self.coarse;
         let model = &base.model;
-        let promises = self.promises(base);
+        let promises = self.promises(base, &|_| true);
         let mut tried: Vec<Fit> =
             promises.par_iter().take(TRIED).map(|(promise, base)| self.with_effect(promise, base)).collect();
         tried.par_extend(own_values(model).into_par_iter().map(|own| {
@@ -225,9 +228,9 @@ impl Search<'_> {
         tried
     }
 
-    /// What each effect promises beside `base`, the best first: from where `base` stands, and where much is missing from other surfaces,
+    /// What each effect that is `asked` for promises beside `base`, the best first: from where `base` stands, and where much is missing from other surfaces,
     /// because what is missing bends the nominal values, and what a motion can show depends on where the contact begins.
-    fn promises(&self, base: &Fit) -> Vec<(Promise, Fit)> {
+    pub(super) fn promises(&self, base: &Fit, asked: &(dyn Fn(&Term) -> bool + Sync)) -> Vec<(Promise, Fit)> {
         let mut bases = vec![base.clone()];
         if !base.model.bilateral && base.energy > FAR_ENERGY * self.coarse.expected() {
             let moved = SURFACES.par_iter().map(|part| {
@@ -243,7 +246,7 @@ impl Search<'_> {
             let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
             let model = &fit.model;
             let excitation = model.scales.excitation(self.coarse.trials, stiffness, surface, model.bilateral);
-            for mut promise in Projection::of(&self.coarse, &fit).promises(&excitation) {
+            for mut promise in Projection::of(&self.coarse, &fit).promises(&excitation, asked) {
                 promise.gain -= lost;
                 match best.iter_mut().find(|(other, _)| other.term.is(&promise.term)) {
                     Some((other, _)) if other.gain >= promise.gain => {}
@@ -257,7 +260,7 @@ impl Search<'_> {
     }
 
     /// `base` with an effect.
-    fn with_effect(&self, promise: &Promise, base: &Fit) -> Fit {
+    pub(super) fn with_effect(&self, promise: &Promise, base: &Fit) -> Fit {
         let model = base.model.with(promise.term);
         let start: Vec<f64> = base.values.iter().chain(&promise.values).copied().collect();
         self.coarse.fit(&model, &start, Effort::QUICK)
@@ -382,7 +385,7 @@ fn distinct(fits: Vec<Fit>) -> Vec<Fit> {
 }
 
 /// Names of all effects, as often as each is there.
-fn sorted_names(model: &ContactModel) -> Vec<&'static str> {
+pub(super) fn sorted_names(model: &ContactModel) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = model.terms.iter().map(crate::diagnose::term::Term::name).collect();
     names.sort_unstable();
     names

@@ -49,7 +49,7 @@ static SPEC: EffectSpec = EffectSpec {
         },
         Form {
             name: "power_law",
-            equation: "F = K x + B v + integral G(t - s) v(s) ds, G(t) = memory_stiffness (t / reference_time)^-exponent, by eight branches over six decades about reference_time",
+            equation: "F = K x + B v + integral G(t - s) v(s) ds, G(t) = memory_stiffness (t / reference_time)^-exponent, by ten branches over six decades about reference_time",
             parameters: &[
                 branch_stiffness("memory_stiffness"),
                 Parameter::new("exponent", RATIO, "0 for a spring, 1 for a damper", 0.02, 0.95),
@@ -73,7 +73,7 @@ static SPEC: EffectSpec = EffectSpec {
         },
         Form {
             name: "quasi_linear_power_law",
-            equation: "F = f(x) + B v + integral G(t - s) df(s), G(t) = memory_ratio (t / reference_time)^-exponent, by eight branches over six decades about reference_time",
+            equation: "F = f(x) + B v + integral G(t - s) df(s), G(t) = memory_ratio (t / reference_time)^-exponent, by ten branches over six decades about reference_time",
             parameters: &[
                 Parameter::new(
                     "memory_ratio",
@@ -92,9 +92,82 @@ static SPEC: EffectSpec = EffectSpec {
     source: "J. C. Maxwell (1867); Wiechert's generalised model; a massless spring in series with damper and spring is the same law; power law: G. W. Scott Blair (1947); quasi-linear: Y. C. Fung, Biomechanics, 1981, ch. 7",
 };
 
-/// Branches that a power law of time is made of, and the factor between their times: six decades in all.
-const POWER_BRANCHES: usize = 8;
-const POWER_SPACING: f64 = 7.196_856_730_011_52;
+/// Branches that a power law of time is made of, and the factor between their times: six decades in all. At an exponent of 0.25 the
+/// sum of exponentials swings by a thousandth about the power law (Poisson's sum: 2 |Gamma(a + 2 pi i / ln factor)| / Gamma(a)).
+const POWER_BRANCHES: usize = 10;
+const POWER_SPACING: f64 = 4.641_588_833_612_779;
+
+/// Parts of the step by which rows are as far apart as the last two: what a clock's digits round.
+const SAME_STEP: f64 = 1e-9;
+
+/// What the state holds: the strained quantity an instant ago; whether there was one; the step that the decays are of; the first
+/// branch's weight in a power law and the factor from one to the next; the branches; their decays in a step.
+mod slot {
+    pub const STRAINED: usize = 0;
+    pub const BEGUN: usize = 1;
+    pub const STEP: usize = 2;
+    pub const WEIGHT: usize = 3;
+    pub const FACTOR: usize = 4;
+    pub const BRANCHES: usize = 5;
+    pub const DECAYS: usize = BRANCHES + super::POWER_BRANCHES;
+}
+
+/// A sum of Maxwell branches along a motion.
+struct Branches<'a> {
+    state: &'a mut EffectState,
+    /// Change of what is strained, depth or spring's force.
+    moved: f64,
+    step: f64,
+    /// Whether the decays that are held are of another step.
+    is_new: bool,
+}
+
+impl<'a> Branches<'a> {
+    /// At an instant at which what is strained is `strained`.
+    fn at(state: &'a mut EffectState, strained: f64, step: f64) -> Self {
+        let has_begun = state[slot::BEGUN] != 0.0;
+        let moved = if has_begun { strained - state[slot::STRAINED] } else { 0.0 };
+        let is_new = !has_begun || (step - state[slot::STEP]).abs() > SAME_STEP * step;
+        (state[slot::STRAINED], state[slot::BEGUN]) = (strained, 1.0);
+        if is_new {
+            state[slot::STEP] = step;
+        }
+        Self { state, moved, step, is_new }
+    }
+
+    /// Force of branch `nth`: exact for a motion that is straight within the step.
+    fn branch(&mut self, nth: usize, stiffness: f64, time: f64) -> f64 {
+        let ratio = if time > 0.0 { self.step / time } else { f64::INFINITY };
+        if self.is_new {
+            self.state[slot::DECAYS + nth] = (-ratio).exp();
+        }
+        let decay = self.state[slot::DECAYS + nth];
+        // Where the difference of the quotient has no digits left its series has them all.
+        let mean = if ratio > 1e-5 { (1.0 - decay) / ratio } else { 1.0 - 0.5 * ratio };
+        let force = &mut self.state[slot::BRANCHES + nth];
+        *force = *force * decay + stiffness * self.moved * mean;
+        *force
+    }
+
+    /// Force of a memory `size (t / reference)^-exponent`: t^-a = integral tau^-a exp(-t / tau) d ln(tau) / Gamma(a), in equal steps of
+    /// ln(tau) about `reference`.
+    fn power_law(&mut self, size: f64, exponent: f64, reference: f64) -> f64 {
+        let first = POWER_SPACING.powf(-0.5 * (POWER_BRANCHES - 1) as f64);
+        if self.is_new {
+            self.state[slot::WEIGHT] = POWER_SPACING.ln() / libm::tgamma(exponent) * first.powf(-exponent);
+            self.state[slot::FACTOR] = POWER_SPACING.powf(-exponent);
+        }
+        let (mut weight, factor) = (size * self.state[slot::WEIGHT], self.state[slot::FACTOR]);
+        let mut time = reference * first;
+        let mut force = 0.0;
+        for nth in 0..POWER_BRANCHES {
+            force += self.branch(nth, weight, time);
+            weight *= factor;
+            time *= POWER_SPACING;
+        }
+        force
+    }
+}
 
 impl Effect for StressRelaxation {
     fn spec(&self) -> &'static EffectSpec {
@@ -123,31 +196,12 @@ impl Effect for StressRelaxation {
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
-        // state: what was strained an instant ago, whether there was one, then the branches.
         let strained = if form >= 3 { touch.spring } else { touch.depth };
-        let moved = if state[1] == 0.0 { 0.0 } else { strained - state[0] };
-        (state[0], state[1]) = (strained, 1.0);
-        let step = touch.step;
-        let mut branch = |nth: usize, stiffness: f64, time: f64| {
-            let ratio = if time > 0.0 { step / time } else { f64::INFINITY };
-            let mean = if ratio > 0.0 { -(-ratio).exp_m1() / ratio } else { 1.0 };
-            state[2 + nth] = state[2 + nth] * (-ratio).exp() + stiffness * moved * mean;
-            state[2 + nth]
-        };
+        let mut branches = Branches::at(state, strained, touch.step);
         touch.extra += match form {
-            0 | 3 => branch(0, values[0], values[1]),
-            1 | 4 => branch(0, values[0], values[1]) + branch(1, values[2], values[3]),
-            _ => {
-                let (exponent, reference) = (values[1], values[2]);
-                // t^-a = integral tau^-a exp(-t / tau) d ln(tau) / Gamma(a), in equal steps of ln(tau).
-                let each = values[0] * POWER_SPACING.ln() / libm::tgamma(exponent);
-                let middle = 0.5 * (POWER_BRANCHES - 1) as f64;
-                let of = |nth: usize| {
-                    let factor = POWER_SPACING.powf(nth as f64 - middle);
-                    branch(nth, each * factor.powf(-exponent), reference * factor)
-                };
-                (0..POWER_BRANCHES).map(of).sum()
-            }
+            0 | 3 => branches.branch(0, values[0], values[1]),
+            1 | 4 => branches.branch(0, values[0], values[1]) + branches.branch(1, values[2], values[3]),
+            _ => branches.power_law(values[0], values[1], values[2]),
         };
     }
 }
