@@ -10,7 +10,7 @@ use super::interval::intervals;
 use super::learned::{LearnedCurve, learned};
 use super::model::index;
 use super::nominal::{NominalContact, law_of, nominal_fit};
-use super::selection::{Chosen, Search};
+use super::selection::{Chosen, Search, sorted_names};
 use super::trial::ContactTrial;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
@@ -224,13 +224,18 @@ fn alternatives(
     let expected = search.data.expected();
     let is_open = |other: &&Fit| {
         let worth = search.worth(fit, other);
-        other.model.names(first) != fit.model.names(first)
+        sorted_names(&other.model) != sorted_names(&fit.model)
             && other.model.terms.len() <= fit.model.terms.len()
             && (worth.gain < LEAST_GAIN || worth.vuong < LEAST_VUONG)
             && search.is_worth(other, &search.nominal)
     };
-    let open = chosen.sets.iter().filter(is_open).take(MOST_ALTERNATIVES);
-    let told = open.map(|other| {
+    let mut open: Vec<&Fit> = Vec::new();
+    for set in chosen.sets.iter().filter(is_open) {
+        if open.iter().all(|other| sorted_names(&other.model) != sorted_names(&set.model)) {
+            open.push(set);
+        }
+    }
+    let told = open.into_iter().take(MOST_ALTERNATIVES).map(|other| {
         let unseen = folds.held_out(&search.data, other);
         let taken = refitted.energy - unseen.energy;
         let share = taken / (refitted.energy - expected).max(taken.abs()).max(f64::MIN_POSITIVE);
