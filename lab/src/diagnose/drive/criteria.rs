@@ -42,6 +42,10 @@ pub const LINK_PART: f64 = 0.3;
 /// that well.
 pub const LEAST_PART_OF_EFFORT: f64 = 0.003;
 
+/// Part of what the smaller law leaves that a rigid one may leave where that is more than the whole effort: half in root mean square,
+/// a quarter of the power. Chosen.
+pub const MOST_LEFT_OF_MOVED: f64 = 0.5;
+
 /// Part of the mismatch that may be left beside named physics before `unknown` is told beside it.
 pub const MOST_LEFT: f64 = 0.6;
 

@@ -3,7 +3,7 @@
 use super::candidates::{one_body, simpler, tried};
 use super::criteria::{
     BLOCK_ROWS, BLOCK_S, LEAST_FREE_SHAPE_PART, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL,
-    LEAST_PART_OF_EFFORT, LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, NEGLIGIBLE_PART,
+    LEAST_PART_OF_EFFORT, LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, MOST_LEFT_OF_MOVED, NEGLIGIBLE_PART,
 };
 use super::filter::innovations;
 use super::fit::{Data, Effort, Fit, fit};
@@ -91,12 +91,21 @@ impl Search<'_> {
         let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape(&self.scales)).count();
         let least_part = if shapes(more) > shapes(less) { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
-        // A law that leaves more than the whole effort follows the encoder's rows and explains none of them.
-        self.unexplained(more) < self.scales.effort
+        self.explains_rows(more, less)
             && self.is_likelier(more, less)
             && worth.share > LEAST_SHARE
             && worth.part_of_all > least_part
             && worth.throughout > LEAST_THROUGHOUT
+    }
+
+    /// Whether `more` explains rows at all: a law that leaves more than the whole effort follows the encoder's rows instead. Where hands
+    /// or a weight move more than the effort does, a rigid law does that leaves by one more term less than half of what `less` leaves; one
+    /// with a link can always follow.
+    fn explains_rows(&self, more: &Fit, less: &Fit) -> bool {
+        let is_one_more = more.model.terms.len() == less.model.terms.len() + 1;
+        let most =
+            if more.model.has_link() || !is_one_more { 0.0 } else { MOST_LEFT_OF_MOVED * self.unexplained(less) };
+        self.unexplained(more) < self.scales.effort.max(most)
     }
 
     /// Smoothed disturbance of `fit`, a column a trial.
