@@ -74,7 +74,8 @@ pub fn diagnose(
     let findings = check::check(rig, trials, &uniform_trials);
     let known = effects::resolve_all(rig, origin)?;
     let is_touching = contact::prepare::is_recorded(rig, trials);
-    let by_force = |rig: &Rig| touched(rig, origin, trials, &figures, say);
+    let is_one_speed = findings.iter().any(|finding| finding.code == "one_speed");
+    let by_force = |rig: &Rig| touched(rig, origin, trials, &figures, is_one_speed, say);
     let mut contact = if is_touching { by_force(&contact_rig(rig, &[]))? } else { None };
     let drive = drive::prepare::is_recorded(rig, trials).then(|| {
         let acted = contact.as_ref().map(|contact| acting_force::as_it_acted(contact, trials));
@@ -161,10 +162,11 @@ fn touched(
     origin: &str,
     trials: &[Recording],
     figures: &[Figures],
+    is_one_speed: bool,
     say: &dyn Fn(&str),
 ) -> Result<Option<contact::outcome::Outcome>> {
     let known = effects::resolve_all(rig, origin)?;
     let Some(nominal) = contact::prepare::nominal(rig, known) else { return Ok(None) };
     let [fine, coarse] = contact::prepare::trials(trials, figures);
-    Ok(contact::outcome::identify(fine, &coarse, &nominal, say))
+    Ok(contact::outcome::identify(fine, &coarse, &nominal, is_one_speed, say))
 }

@@ -64,6 +64,11 @@ pub trait Effect: Sync {
         &[]
     }
 
+    /// Whether form `form` with `values` is what the effect's statement says, and no other law in its clothes.
+    fn is_itself(&self, _form: usize, _values: &[f64]) -> bool {
+        true
+    }
+
     /// For a form that repeats in time: where to look for its frequency. Its `starts` are then empty.
     fn frequency_search(&self, _form: usize, _scene: &ExcitationStats) -> Option<FrequencySearch> {
         None

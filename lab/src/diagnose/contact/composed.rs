@@ -13,41 +13,61 @@ use crate::diagnose::term::Term;
 /// Composed laws that are fitted to the end.
 const POLISHED: usize = 3;
 
+/// Laws of the spring, one of which a memory is composed with even where none was found beside it: a spring bends by the one or the other.
+const SPRINGS: [&str; 2] = ["nonlinear_stiffness", "layered_stiffness"];
+
 impl Search<'_> {
-    /// For each of `fits` whose effects build on one another the best that their forms do together, if it has not been asked for `before`.
-    pub(super) fn composed(&self, fits: &[Fit], before: &mut Vec<(Vec<&'static str>, OwnValues)>) -> Vec<Fit> {
+    /// For each of `fits` with a memory, or whatever else builds on others, the best that the forms of it and of each law that it can
+    /// build on do together, if that has not been `asked` before.
+    pub(super) fn composed(&self, fits: &[Fit], asked: &mut Vec<(Vec<&'static str>, OwnValues)>) -> Vec<Fit> {
+        let first = self.nominal.model.terms.len();
         let mut composed = Vec::new();
         for fit in fits {
-            let asked = (sorted_names(&fit.model), fit.model.own);
-            if before.contains(&asked) {
-                continue;
-            }
-            before.push(asked);
-            let first = self.nominal.model.terms.len();
-            let pairs = (first..fit.model.terms.len())
-                .flat_map(|upper| (first..fit.model.terms.len()).map(move |lower| (lower, upper)));
-            for (lower, upper) in
-                pairs.filter(|&(lower, upper)| builds_on(&fit.model.terms[upper], &fit.model.terms[lower]))
-            {
-                composed.extend(self.composed_of(fit, lower, upper));
+            for upper in first..fit.model.terms.len() {
+                for lower in built_on(&fit.model.terms[upper]) {
+                    let Some(bare) = self.bare(fit, upper, lower) else { continue };
+                    let mut names = sorted_names(&bare.model);
+                    names.extend([lower, fit.model.terms[upper].name()]);
+                    let question = (names, fit.model.own);
+                    if !asked.contains(&question) {
+                        composed.extend(self.composed_on(&bare, lower, fit.model.terms[upper].name()));
+                        asked.push(question);
+                    }
+                }
             }
         }
         composed
     }
 
-    /// `fit` with the forms of the terms `lower` and `upper` that do best together, where `upper` builds on `lower`.
-    fn composed_of(&self, fit: &Fit, lower: usize, upper: usize) -> Vec<Fit> {
-        let [lower_name, upper_name] = [lower, upper].map(|at| fit.model.terms[at].name());
-        let mut bare = fit.clone();
-        for at in [lower.max(upper), lower.min(upper)] {
-            let (model, values) = without_term(&bare, at);
-            bare = Fit { model, values, ..bare };
+    /// `fit` without the term `upper` and without all that it can build on; `None` where `lower` is a law of its own kind that `fit` does
+    /// without.
+    fn bare(&self, fit: &Fit, upper: usize, lower: &'static str) -> Option<Fit> {
+        let laws = built_on(&fit.model.terms[upper]);
+        let is_there = fit.model.times(lower) > 0;
+        if !is_there && !SPRINGS.contains(&lower) {
+            return None;
         }
+        let first = self.nominal.model.terms.len();
+        let is_other = |term: &Term| term.name() == lower || SPRINGS.contains(&lower) && SPRINGS.contains(&term.name());
+        let mut bare = fit.clone();
+        for at in (first..fit.model.terms.len()).rev() {
+            let term = &fit.model.terms[at];
+            if at == upper || laws.contains(&term.name()) && is_other(term) {
+                let (model, values) = without_term(&bare, at);
+                bare = Fit { model, values, ..bare };
+            }
+        }
+        Some(bare)
+    }
+
+    /// `bare` with the forms of `lower_name` and, building on it, of `upper_name` that do best together.
+    fn composed_on(&self, bare: &Fit, lower_name: &str, upper_name: &str) -> Vec<Fit> {
         let bare = self.coarse.fit(&bare.model, &bare.values, Effort::QUICK);
         let lowers = self.promises(&bare, &|term| term.name() == lower_name);
         let lowers: Vec<Fit> = lowers.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
-        let is_upper =
-            |term: &Term| term.name() == upper_name && term.effect.builds_on(term.form).contains(&lower_name);
+        let is_upper = |term: &Term| {
+            term.name() == upper_name && term.effect.builds_on(term.form).iter().any(|name| *name == lower_name)
+        };
         let both = lowers.iter().flat_map(|base| self.promises(base, &is_upper));
         let both: Vec<_> = both.collect();
         let mut both: Vec<Fit> = both.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
@@ -63,8 +83,8 @@ impl Search<'_> {
     }
 }
 
-/// Whether some form of `upper`'s effect builds on that of `lower`.
-fn builds_on(upper: &Term, lower: &Term) -> bool {
+/// Names that some form of `upper`'s effect builds on.
+fn built_on(upper: &Term) -> &'static [&'static str] {
     let forms = upper.effect.spec().forms.len();
-    (0..forms).any(|form| upper.effect.builds_on(form).contains(&lower.name()))
+    (0..forms).map(|form| upper.effect.builds_on(form)).find(|names| !names.is_empty()).unwrap_or_default()
 }

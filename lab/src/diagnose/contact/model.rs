@@ -294,6 +294,15 @@ impl ContactModel {
         })
     }
 
+    /// Whether each effect's values are what its statement says.
+    #[must_use]
+    pub fn is_as_stated(&self, values: &[f64]) -> bool {
+        self.terms.iter().enumerate().all(|(nth, term)| {
+            let start = self.first_value_of(nth);
+            term.effect.is_itself(term.form, &values[start..start + self.count_of(term)])
+        })
+    }
+
     /// Force that the sensor shows along `trial`, whose number is `number`.
     #[must_use]
     pub fn predicted(&self, values: &[f64], trial: &ContactTrial, number: usize) -> Vec<f64> {

@@ -93,6 +93,7 @@ pub fn identify(
     trials: Vec<ContactTrial>,
     coarse: &[ContactTrial],
     rig: &NominalContact,
+    is_one_speed: bool,
     say: &dyn Fn(&str),
 ) -> Option<Outcome> {
     let rows: usize = trials.iter().map(ContactTrial::len).sum();
@@ -105,7 +106,7 @@ pub fn identify(
     let data = Data::new(&trials).weighed(&first);
     let nominal = data.fit(&first.model, &first.values, Effort::FULL);
     let coarse = Data::new(coarse).weighed(&nominal);
-    let mut search = Search { data, coarse, nominal };
+    let mut search = Search { data, coarse, nominal, is_one_speed };
     let chosen = search.run(say);
     say("the contact: what is left");
     let mut outcome = judged(&search, chosen, &start);
@@ -226,7 +227,7 @@ fn alternatives(
         let worth = search.worth(fit, other);
         sorted_names(&other.model) != sorted_names(&fit.model)
             && other.model.terms.len() <= fit.model.terms.len()
-            && (worth.gain < LEAST_GAIN || worth.vuong < LEAST_VUONG)
+            && (worth.gain < LEAST_GAIN || worth.vuong < LEAST_VUONG || search.is_one_law(&other.model, &fit.model))
             && search.is_worth(other, &search.nominal)
     };
     let mut open: Vec<&Fit> = Vec::new();
@@ -295,7 +296,7 @@ mod tests {
 
     fn found(contacts: [&TestContact; 2]) -> Outcome {
         let trials = || contacts.iter().zip(1u64..).map(|(contact, seed)| contact.trial(seed)).collect::<Vec<_>>();
-        identify(trials(), &trials(), &TestContact::nominal(), &|_| {}).unwrap()
+        identify(trials(), &trials(), &TestContact::nominal(), false, &|_| {}).unwrap()
     }
 
     fn names(outcome: &Outcome) -> Vec<&'static str> {

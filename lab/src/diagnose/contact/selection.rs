@@ -22,6 +22,8 @@ pub struct Search<'a> {
     pub coarse: Data<'a>,
     /// The nominal law, refitted.
     pub nominal: Fit,
+    /// Whether the tool moves at one speed each way.
+    pub is_one_speed: bool,
 }
 
 /// What was chosen, and the sets that it was chosen from.
@@ -130,14 +132,29 @@ impl Search<'_> {
             && (worth.vuong > LEAST_VUONG || (worth.share > LEAST_TOLD_SHARE && worth.left_before > FAR_FROM_NOISE))
     }
 
-    /// Whether `fit` is a law that its effects stand for: no value at the end of what the recordings show, no wave that has slid into step
-    /// with the motion, and no spring whose force falls on the way in, unless the rig file has one.
+    /// Whether `fit` is a law that its effects stand for: no value at the end of what the recordings show, none by which an effect is not
+    /// what it is called, no wave that has slid into step with the motion, and no spring whose force falls on the way in, unless the rig file has one.
     fn is_admissible(&self, fit: &Fit) -> bool {
         let falls = |fit: &Fit| fit.model.has_falling_spring(&fit.values);
         let mut frequencies = fit.model.frequencies(&fit.values).into_iter();
         !fit.model.is_at_end(&fit.values)
+            && fit.model.is_as_stated(&fit.values)
             && !frequencies.any(|frequency| is_in_step(&self.coarse, frequency))
             && (!falls(fit) || falls(&self.nominal))
+    }
+
+    /// Whether the recordings cannot distinguish the laws of two sets of effects, whatever they leave: at one speed each way a Maxwell
+    /// branch, `branch_stiffness v relaxation_time (1 - exp(-t / relaxation_time))` after a reversal, is Dahl's loop over `v t`.
+    #[must_use]
+    pub fn is_one_law(&self, one: &ContactModel, other: &ContactModel) -> bool {
+        let kinds = |model: &ContactModel| {
+            let mut names = sorted_names(model);
+            names.iter_mut().filter(|name| **name == "stress_relaxation").for_each(|name| *name = "hysteresis");
+            names.sort_unstable();
+            names.dedup();
+            names
+        };
+        self.is_one_speed && kinds(one) == kinds(other)
     }
 
     /// What a value more has to gain, nats: half the logarithm of the rows that tell more than one (G. Schwarz, Ann. Stat. 6 (1978) 461).

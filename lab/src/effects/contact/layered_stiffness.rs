@@ -75,6 +75,10 @@ static SPEC: EffectSpec = EffectSpec {
     source: "springs in series and parallel; bilinear stiffness",
 };
 
+/// Transitions that the boundary lies below the surface at the least: at three, one part in twenty of what is added acts at the surface,
+/// 1 / (1 + exp(3)). A spring that bends from the surface on is no layer.
+const LEAST_TRANSITIONS: f64 = 3.0;
+
 impl Effect for LayeredStiffness {
     fn spec(&self) -> &'static EffectSpec {
         &SPEC
@@ -96,6 +100,10 @@ impl Effect for LayeredStiffness {
             return depths.map(|depth| Start::sized(&[added, depth], &[0])).collect();
         }
         depths.map(|depth| Start::sized(&[added, depth, 0.05 * scene.depth], &[0])).collect()
+    }
+
+    fn is_itself(&self, form: usize, values: &[f64]) -> bool {
+        form != 1 || values[2] * LEAST_TRANSITIONS < values[1]
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
