@@ -17,20 +17,21 @@ const POLISHED: usize = 3;
 const SPRINGS: [&str; 2] = ["nonlinear_stiffness", "layered_stiffness"];
 
 impl Search<'_> {
-    /// For each of `fits` with a memory, or whatever else builds on others, the best that the forms of it and of each law that it can
-    /// build on do together, if that has not been `asked` before.
+    /// For each of `fits` with a memory, or whatever else builds on a spring, the best that the forms of it and of each law of the spring
+    /// do together, if that has not been `asked` before.
     pub(super) fn composed(&self, fits: &[Fit], asked: &mut Vec<(Vec<&'static str>, OwnValues)>) -> Vec<Fit> {
         let first = self.nominal.model.terms.len();
         let mut composed = Vec::new();
         for fit in fits {
             for upper in first..fit.model.terms.len() {
-                for lower in built_on(&fit.model.terms[upper]) {
-                    let Some(bare) = self.bare(fit, upper, lower) else { continue };
+                let upper_name = fit.model.terms[upper].name();
+                for lower in springs_under(&fit.model.terms[upper]) {
+                    let bare = self.bare(fit, upper);
                     let mut names = sorted_names(&bare.model);
-                    names.extend([lower, fit.model.terms[upper].name()]);
+                    names.extend([lower, upper_name]);
                     let question = (names, fit.model.own);
                     if !asked.contains(&question) {
-                        composed.extend(self.composed_on(&bare, lower, fit.model.terms[upper].name()));
+                        composed.extend(self.composed_on(&bare, lower, upper_name));
                         asked.push(question);
                     }
                 }
@@ -39,25 +40,16 @@ impl Search<'_> {
         composed
     }
 
-    /// `fit` without the term `upper` and without all that it can build on; `None` where `lower` is a law of its own kind that `fit` does
-    /// without.
-    fn bare(&self, fit: &Fit, upper: usize, lower: &'static str) -> Option<Fit> {
-        let laws = built_on(&fit.model.terms[upper]);
-        let is_there = fit.model.times(lower) > 0;
-        if !is_there && !SPRINGS.contains(&lower) {
-            return None;
-        }
-        let first = self.nominal.model.terms.len();
-        let is_other = |term: &Term| term.name() == lower || SPRINGS.contains(&lower) && SPRINGS.contains(&term.name());
+    /// `fit` without the term `upper` and without the law of the spring that was found.
+    fn bare(&self, fit: &Fit, upper: usize) -> Fit {
         let mut bare = fit.clone();
-        for at in (first..fit.model.terms.len()).rev() {
-            let term = &fit.model.terms[at];
-            if at == upper || laws.contains(&term.name()) && is_other(term) {
+        for at in (self.nominal.model.terms.len()..fit.model.terms.len()).rev() {
+            if at == upper || SPRINGS.contains(&fit.model.terms[at].name()) {
                 let (model, values) = without_term(&bare, at);
                 bare = Fit { model, values, ..bare };
             }
         }
-        Some(bare)
+        bare
     }
 
     /// `bare` with the forms of `lower_name` and, building on it, of `upper_name` that do best together.
@@ -83,8 +75,9 @@ impl Search<'_> {
     }
 }
 
-/// Names that some form of `upper`'s effect builds on.
-fn built_on(upper: &Term) -> &'static [&'static str] {
-    let forms = upper.effect.spec().forms.len();
-    (0..forms).map(|form| upper.effect.builds_on(form)).find(|names| !names.is_empty()).unwrap_or_default()
+/// Laws of the spring that some form of `upper`'s effect builds on.
+fn springs_under(upper: &Term) -> impl Iterator<Item = &'static str> {
+    let forms = 0..upper.effect.spec().forms.len();
+    let builds_on = move |spring: &str| forms.clone().any(|form| upper.effect.builds_on(form).contains(&spring));
+    SPRINGS.into_iter().filter(move |spring| builds_on(spring))
 }

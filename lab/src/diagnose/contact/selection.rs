@@ -70,6 +70,9 @@ const POLISHED: usize = 5;
 /// Effects at most.
 const MOST_TERMS: usize = 4;
 
+/// Sets that are looked at for one whose effects stand beside one another.
+const MOST_SURVIVORS: usize = 8;
+
 /// Other surfaces that a law's search starts from where much is missing, of the depth.
 const SURFACES: [f64; 3] = [-0.3, 0.15, 0.4];
 
@@ -182,8 +185,10 @@ impl Search<'_> {
                 let quick = self.grown(base);
                 grown.extend(self.polished(quick));
             }
-            grown.extend(self.composed(&grown, &mut composed));
             grown.retain(|fit| self.is_admissible(fit));
+            grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+            let anew = self.composed(&grown[..BEAM.min(grown.len())], &mut composed);
+            grown.extend(anew.into_iter().filter(|fit| self.is_admissible(fit)));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             let Some(least) = grown.first() else { break };
             let rest = Rest::of(&self.data, least);
@@ -215,6 +220,7 @@ impl Search<'_> {
         let fit = self.weigh_by(fit);
         let fit = self.pruned(fit);
         sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
+        let fit = self.surviving(fit, &sets);
         let fit = self.simplest(fit, &sets);
         Chosen { fit, sets }
     }
@@ -345,6 +351,20 @@ impl Search<'_> {
             best = self.pruned(fit);
         }
         best
+    }
+
+    /// `fit`; where leaving out one effect after the other left none of it, the likeliest of `sets` whose effects stand beside one another.
+    fn surviving(&self, fit: Fit, sets: &[Fit]) -> Fit {
+        let least = sets.iter().min_by(|a, b| a.energy.total_cmp(&b.energy));
+        let Some(least) = least.filter(|_| fit.model == self.nominal.model) else { return fit };
+        let rest = Rest::of(&self.data, least);
+        let mut worthy: Vec<&Fit> = sets.iter().filter(|set| self.is_worth(set, &self.nominal)).collect();
+        worthy.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
+        let stands = |set: &Fit| {
+            let pruned = self.pruned(set.clone());
+            (pruned.model.terms.len() > self.nominal.model.terms.len()).then_some(pruned)
+        };
+        worthy.into_iter().take(MOST_SURVIVORS).find_map(stands).unwrap_or(fit)
     }
 
     /// The simplest of `sets` that the recordings do not tell from `best`; that where there is none.
