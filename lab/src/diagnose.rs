@@ -74,7 +74,8 @@ pub fn diagnose(
     let findings = check::check(rig, trials, &uniform_trials);
     let known = effects::resolve_all(rig, origin)?;
     let is_touching = contact::prepare::is_recorded(rig, trials);
-    let is_one_speed = findings.iter().any(|finding| finding.code == "one_speed");
+    // Held at one depth a memory fades and a loop does not.
+    let is_one_speed = ["one_speed", "no_hold"].iter().all(|code| findings.iter().any(|finding| finding.code == *code));
     let by_force = |rig: &Rig| touched(rig, origin, trials, &figures, is_one_speed, say);
     let mut contact = if is_touching { by_force(&contact_rig(rig, &[]))? } else { None };
     let drive = drive::prepare::is_recorded(rig, trials).then(|| {

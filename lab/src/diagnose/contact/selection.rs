@@ -22,7 +22,7 @@ pub struct Search<'a> {
     pub coarse: Data<'a>,
     /// The nominal law, refitted.
     pub nominal: Fit,
-    /// Whether the tool moves at one speed each way.
+    /// Whether the tool moves at one speed each way and never stays at a depth.
     pub is_one_speed: bool,
 }
 
@@ -146,7 +146,7 @@ impl Search<'_> {
             && (!falls(fit) || falls(&self.nominal))
     }
 
-    /// Whether the recordings cannot distinguish the laws of two sets of effects, whatever they leave: at one speed each way a Maxwell
+    /// Whether the recordings cannot distinguish the laws of two sets of effects, whatever they leave: at one speed each way and without a hold a Maxwell
     /// branch, `branch_stiffness v relaxation_time (1 - exp(-t / relaxation_time))` after a reversal, is Dahl's loop over `v t`.
     #[must_use]
     pub fn is_one_law(&self, one: &ContactModel, other: &ContactModel) -> bool {
@@ -187,7 +187,9 @@ impl Search<'_> {
             }
             grown.retain(|fit| self.is_admissible(fit));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
-            let anew = self.composed(&grown[..BEAM.min(grown.len())], &mut composed);
+            // At one speed a memory is a loop: what it multiplies cannot be told.
+            let heads = if self.is_one_speed { 0 } else { BEAM.min(grown.len()) };
+            let anew = self.composed(&grown[..heads], &mut composed);
             grown.extend(anew.into_iter().filter(|fit| self.is_admissible(fit)));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             let Some(least) = grown.first() else { break };
