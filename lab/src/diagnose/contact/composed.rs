@@ -53,13 +53,12 @@ impl Search<'_> {
     }
 
     /// `bare` with the forms of `lower_name` and, building on it, of `upper_name` that do best together.
-    fn composed_on(&self, bare: &Fit, lower_name: &str, upper_name: &str) -> Vec<Fit> {
+    fn composed_on(&self, bare: &Fit, lower_name: &'static str, upper_name: &str) -> Vec<Fit> {
         let bare = self.coarse.fit(&bare.model, &bare.values, Effort::QUICK);
         let lowers = self.promises(&bare, &|term| term.name() == lower_name);
         let lowers: Vec<Fit> = lowers.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
-        let is_upper = |term: &Term| {
-            term.name() == upper_name && term.effect.builds_on(term.form).iter().any(|name| *name == lower_name)
-        };
+        let is_upper =
+            |term: &Term| term.name() == upper_name && term.effect.builds_on(term.form).contains(&lower_name);
         let both = lowers.iter().flat_map(|base| self.promises(base, &is_upper));
         let both: Vec<_> = both.collect();
         let mut both: Vec<Fit> = both.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
