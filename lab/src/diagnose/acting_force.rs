@@ -41,3 +41,29 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
     }
     trials
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::contact::outcome::identify;
+    use crate::diagnose::contact::testing::{FORCE_NOISE, TestContact};
+
+    /// A sensor that shows no more than 2 N of a contact that pushes with up to 3 N: the drive is told of the 3 N.
+    #[test]
+    fn what_a_clipped_reading_misses_is_given_back() {
+        let clipped = TestContact { limit: 2.0, ..TestContact::PLAIN };
+        let trials = || [1, 2].map(|seed| clipped.trial(seed)).to_vec();
+        let contact = identify(trials(), &trials(), &TestContact::nominal(), false, &|_| {}).unwrap();
+        assert_eq!(contact.chosen.model.names(0), ["force_saturation"]);
+        let acted = as_it_acted(&contact, &[1, 2].map(|seed| clipped.recording(seed)));
+        for (acted, seed) in acted.iter().zip([1, 2]) {
+            let whole = TestContact::PLAIN.recording(seed);
+            let pairs = || acted.force.iter().flatten().zip(whole.force.iter().flatten());
+            assert!(pairs().filter(|(_, whole)| **whole > 2.3).count() > 100);
+            for (acted, whole) in pairs() {
+                // Five deviations of the noise, which a clipped row does not hold, and those of the law in 5000 rows.
+                assert!((acted - whole).abs() < 6.0 * FORCE_NOISE, "{acted} N for {whole} N");
+            }
+        }
+    }
+}

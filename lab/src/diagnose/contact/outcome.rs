@@ -295,8 +295,12 @@ mod tests {
     use super::*;
 
     fn found(contacts: [&TestContact; 2]) -> Outcome {
+        found_at(contacts, false)
+    }
+
+    fn found_at(contacts: [&TestContact; 2], is_one_speed: bool) -> Outcome {
         let trials = || contacts.iter().zip(1u64..).map(|(contact, seed)| contact.trial(seed)).collect::<Vec<_>>();
-        identify(trials(), &trials(), &TestContact::nominal(), false, &|_| {}).unwrap()
+        identify(trials(), &trials(), &TestContact::nominal(), is_one_speed, &|_| {}).unwrap()
     }
 
     fn names(outcome: &Outcome) -> Vec<&'static str> {
@@ -327,6 +331,37 @@ mod tests {
         let [stiffness, time] = [outcome.chosen.values[first], outcome.chosen.values[first + 1]];
         assert!((stiffness / 60.0 - 1.0).abs() < 0.1 && (time / 0.4 - 1.0).abs() < 0.1, "{stiffness} {time}");
         assert!(outcome.named[0].held_out_share > 0.9 && outcome.named[0].p_value < 1e-6);
+    }
+
+    #[test]
+    fn a_memory_that_multiplies_a_bent_spring_is_named_with_it() {
+        let outcome = found([&TestContact { exponent: 1.8, fading: 1.5, ..TestContact::PLAIN }; 2]);
+        let mut told = names(&outcome);
+        told.sort_unstable();
+        assert_eq!((told, outcome.verdict), (vec!["nonlinear_stiffness", "stress_relaxation"], Verdict::Explained));
+        let model = &outcome.chosen.model;
+        let value = |name: &str, parameter: usize| {
+            let at = model.terms.iter().position(|term| term.name() == name).unwrap();
+            outcome.chosen.values[model.first_value_of(at) + parameter]
+        };
+        for (found, truth) in [
+            (value("stress_relaxation", 0), 1.5),
+            (value("stress_relaxation", 1), 0.4),
+            (value("nonlinear_stiffness", 0), 1.8),
+        ] {
+            assert!((found / truth - 1.0).abs() < 0.05, "{found} for {truth}");
+        }
+    }
+
+    /// A memory and a loop are one force where the tool moves at one speed: the recordings here have many, and decide.
+    #[test]
+    fn at_one_speed_a_loop_stays_beside_a_memory_as_an_alternative() {
+        let relaxing = TestContact { branch: 200.0, ..TestContact::PLAIN };
+        let loops =
+            |outcome: &Outcome| outcome.alternatives.iter().filter(|other| other.names == ["hysteresis"]).count();
+        let [decided, open] = [false, true].map(|is_one_speed| found_at([&relaxing; 2], is_one_speed));
+        assert_eq!((names(&decided), loops(&decided)), (vec!["stress_relaxation"], 0));
+        assert_eq!((names(&open), loops(&open)), (vec!["stress_relaxation"], 1));
     }
 
     #[test]

@@ -27,13 +27,30 @@ pub struct TestContact {
     pub damping: f64,
     /// Force of a branch that relaxes, N/m, in 0.4 s.
     pub branch: f64,
+    /// Exponent of the spring, whose force at [`DEPTH`] is that of the stiffness.
+    pub exponent: f64,
+    /// What fades of a step of the spring's force in 0.4 s, over what stays.
+    pub fading: f64,
     /// Zero of the sensor, N.
     pub zero: f64,
+    /// Greatest force that the sensor shows, N.
+    pub limit: f64,
 }
+
+/// Depth that the spring's stiffness is stated at, m.
+const DEPTH: f64 = 8e-3;
 
 impl TestContact {
     /// Spring and damper alone.
-    pub const PLAIN: Self = Self { stiffness: 300.0, damping: 6.0, branch: 0.0, zero: 0.0 };
+    pub const PLAIN: Self = Self {
+        stiffness: 300.0,
+        damping: 6.0,
+        branch: 0.0,
+        exponent: 1.0,
+        fading: 0.0,
+        zero: 0.0,
+        limit: f64::INFINITY,
+    };
 
     /// The rig file of it.
     pub fn nominal() -> NominalContact {
@@ -47,18 +64,21 @@ impl TestContact {
         let [force_noise, position_noise] = [FORCE_NOISE, POSITION_NOISE].map(|sigma| Normal::new(0.0, sigma).unwrap());
         let time: Vec<f64> = (0..(12.0 * RATE) as usize).map(|row| row as f64 / RATE).collect();
         let depth = |t: f64| 4e-3 * (1.0 - (4.0 * t).cos()) * (1.0 + 0.4 * (1.1 * t).sin()) - 2e-3;
-        let (mut branch, mut before) = (0.0, depth(0.0).max(0.0));
+        let spring = |inside: f64| self.stiffness * DEPTH * (inside / DEPTH).powf(self.exponent);
+        let strained = |inside: f64| self.branch * inside + self.fading * spring(inside);
+        let (mut branch, mut before) = (0.0, strained(depth(0.0).max(0.0)));
         let (mut position, mut force) = (Vec::new(), Vec::new());
         for t in &time {
             let x = depth(*t);
             let v = (depth(t + 1e-5) - depth(t - 1e-5)) / 2e-5;
             let inside = x.max(0.0);
-            // Exact for a depth that is straight between two rows.
+            // Exact for what is strained in a straight line between two rows.
             let ratio = 1.0 / (RATE * 0.4);
-            branch = branch * f64::exp(-ratio) + self.branch * (inside - before) * (-(-ratio).exp_m1() / ratio);
-            before = inside;
-            let law = if x > 0.0 { self.stiffness * x + self.damping * v } else { 0.0 };
-            force.push((law + branch).max(0.0) + self.zero + force_noise.sample(&mut random));
+            branch = branch * f64::exp(-ratio) + (strained(inside) - before) * (-(-ratio).exp_m1() / ratio);
+            before = strained(inside);
+            let law = if x > 0.0 { spring(x) + self.damping * v } else { 0.0 };
+            let pushed = (law + branch).max(0.0) + self.zero + force_noise.sample(&mut random);
+            force.push(pushed.min(self.limit));
             position.push(x + position_noise.sample(&mut random));
         }
         Recording { name: format!("trial-{seed}.csv"), time, position, force: Some(force), ..Recording::default() }

@@ -128,3 +128,15 @@ impl Effect for LayeredStiffness {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_boundary_as_wide_as_it_is_deep_is_no_layer() {
+        assert!(LayeredStiffness.is_itself(1, &[500.0, 3e-3, 0.9e-3]) && LayeredStiffness.is_itself(0, &[500.0, 3e-3]));
+        assert!(!LayeredStiffness.is_itself(1, &[500.0, 3e-3, 1.1e-3]));
+        assert!(!LayeredStiffness.is_itself(1, &[500.0, 3e-3, f64::NAN]));
+    }
+}
