@@ -64,6 +64,12 @@ pub trait Effect: Sync {
         &[]
     }
 
+    /// The simpler form that form `form` is where none of what it builds on is there, and its values from `values` beside a spring of
+    /// `stiffness`: the same law. The values are as many.
+    fn simpler(&self, _form: usize, _values: &[f64], _stiffness: f64) -> Option<(usize, Vec<f64>)> {
+        None
+    }
+
     /// Whether form `form` with `values` is what the effect's statement says, and no other law in its clothes.
     fn is_itself(&self, _form: usize, _values: &[f64]) -> bool {
         true

@@ -293,6 +293,7 @@ fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held
 mod tests {
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
+    use crate::diagnose::term::Term;
 
     fn found(contacts: [&TestContact; 2]) -> Outcome {
         found_at(contacts, false)
@@ -351,6 +352,29 @@ mod tests {
         ] {
             assert!((found / truth - 1.0).abs() < 0.05, "{found} for {truth}");
         }
+    }
+
+    /// A memory beside a straight spring is found first; from it the search comes to the one that multiplies a bent one, to the noise.
+    #[test]
+    fn memory_and_spring_are_composed_from_the_spring_up() {
+        let trials = [1, 2].map(|seed| TestContact { exponent: 1.8, fading: 1.5, ..TestContact::PLAIN }.trial(seed));
+        let first = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        let data = || Data::new(&trials).weighed(&first);
+        let search = Search { nominal: data().again(&first), data: data(), coarse: data(), is_one_speed: false };
+        let relaxation = Term { effect: crate::effects::find("stress_relaxation").unwrap(), form: 0 };
+        let model = first.model.with(relaxation);
+        let start: Vec<f64> = first.values.iter().copied().chain([100.0, 0.4]).collect();
+        let beside = search.data.fit(&model, &start, Effort::FULL);
+        let composed = search.composed(std::slice::from_ref(&beside), &mut Vec::new());
+        let least = composed.iter().min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap();
+        assert_eq!(sorted_names(&least.model), ["nonlinear_stiffness", "stress_relaxation"]);
+        // The effective weights are those of the nominal law and so a little too small: the right law leaves less than the expected one.
+        assert!(least.energy < 1.1 * search.data.expected(), "{} of {}", least.energy, search.data.expected());
+        assert!(beside.energy > 3.0 * least.energy, "{} beside {}", beside.energy, least.energy);
+        // Without its spring the memory is one beside the straight spring, with the sizes of that.
+        let at = least.model.terms.iter().position(|term| term.name() == "nonlinear_stiffness").unwrap();
+        let (model, _) = super::super::selection::without_term(least, at);
+        assert_eq!(model.terms, [relaxation]);
     }
 
     /// A memory and a loop are one force where the tool moves at one speed: the recordings here have many, and decide.

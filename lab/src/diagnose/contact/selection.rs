@@ -73,6 +73,9 @@ const MOST_TERMS: usize = 4;
 /// Sets that are looked at for one whose effects stand beside one another.
 const MOST_SURVIVORS: usize = 8;
 
+/// Part of the recordings' own stiffness that a memory starts beside at the least: beside no spring it would start as none.
+const LEAST_STIFFNESS: f64 = 0.1;
+
 /// Other surfaces that a law's search starts from where much is missing, of the depth.
 const SURFACES: [f64; 3] = [-0.3, 0.15, 0.4];
 
@@ -400,7 +403,7 @@ fn free(fit: &Fit) -> usize {
     fit.model.free_count()
 }
 
-/// Model and values of `fit` without term `at`.
+/// Model and values of `fit` without term `at`. What built on it alone becomes its simpler form.
 #[must_use]
 pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
     let start = fit.model.first_value_of(at);
@@ -408,6 +411,20 @@ pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
     values.drain(start..start + fit.model.count_of(&fit.model.terms[at]));
     let mut model = fit.model.clone();
     model.terms.remove(at);
+    let stiffness = values[index::STIFFNESS].max(LEAST_STIFFNESS * model.scales.stiffness());
+    for nth in 0..model.terms.len() {
+        let Term { effect, form } = model.terms[nth];
+        let needed = effect.builds_on(form);
+        if needed.is_empty() || needed.iter().any(|name| model.times(name) > 0) {
+            continue;
+        }
+        let start = model.first_value_of(nth);
+        let own = start..start + model.count_of(&model.terms[nth]);
+        if let Some((form, simpler)) = effect.simpler(form, &values[own.clone()], stiffness) {
+            model.terms[nth].form = form;
+            values[own].copy_from_slice(&simpler);
+        }
+    }
     (model, values)
 }
 

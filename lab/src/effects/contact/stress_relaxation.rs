@@ -78,7 +78,7 @@ static SPEC: EffectSpec = EffectSpec {
                 Parameter::new(
                     "memory_ratio",
                     RATIO,
-                    "what a step still keeps at reference_time beside what stays, over that",
+                    "what is left to fade of a step at reference_time, over what stays",
                     0.0,
                     f64::INFINITY,
                 ),
@@ -176,6 +176,13 @@ impl Effect for StressRelaxation {
 
     fn builds_on(&self, form: usize) -> &'static [&'static str] {
         if form >= 3 { &["nonlinear_stiffness", "layered_stiffness", "plastic_set"] } else { &[] }
+    }
+
+    fn simpler(&self, form: usize, values: &[f64], stiffness: f64) -> Option<(usize, Vec<f64>)> {
+        let sizes: &[usize] = if form == 4 { &[0, 2] } else { &[0] };
+        let mut values = values.to_vec();
+        sizes.iter().for_each(|size| values[*size] *= stiffness);
+        (form >= 3).then(|| (form - 3, values))
     }
 
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
