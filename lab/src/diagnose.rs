@@ -85,7 +85,7 @@ pub fn diagnose(
     let mut drive = drive.flatten();
     let found = drive.as_ref().map(drive_report::found).unwrap_or_default();
     let sensors: Vec<NamedEffect> =
-        found.into_iter().filter(|found| CARRIED_BY_THE_DRIVE.contains(&found.name())).collect();
+        found.into_iter().filter(|found| acting_force::CARRIED_BY_THE_DRIVE.contains(&found.name())).collect();
     if is_touching && !sensors.is_empty() {
         contact = by_force(&contact_rig(rig, &sensors))?;
     }
@@ -117,9 +117,6 @@ fn identified(
     let nominal = drive::prepare::nominal(rig, trials, known)?;
     drive::outcome::identify(drive::prepare::trials(rig, trials), &nominal, seed, say)
 }
-
-/// Effects of the force sensor that the drive tells better than the contact does: force and position alone show them as other values.
-pub(crate) const CARRIED_BY_THE_DRIVE: [&str; 2] = ["force_gain", "tool_inertia"];
 
 /// The rig without its drive, which has a model of its own; `sensors` is what that found of the force sensor, and known to the contact.
 fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {

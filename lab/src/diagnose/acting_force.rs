@@ -1,6 +1,5 @@
 //! The force that acted on the drive, where the contact told what the sensor made of it.
 
-use super::CARRIED_BY_THE_DRIVE;
 use super::contact::fit::Fit;
 use super::contact::outcome::Outcome;
 use super::contact::selection::without_term;
@@ -8,6 +7,9 @@ use super::term::Term;
 use crate::effects::Place;
 use crate::recording::Recording;
 use crate::recording::assemble::interpolated;
+
+/// Effects of the force sensor that the drive tells better than the contact does: force and position alone show them as other values.
+pub const CARRIED_BY_THE_DRIVE: [&str; 2] = ["force_gain", "tool_inertia"];
 
 /// `trials` with the force as it acted, N or N m: what the named effects of the sensor add to the law's reading along the motion is taken
 /// off, in the means of rows that the contact was looked at in. The drive would take a zero for a load, and what a clipped reading
@@ -35,7 +37,9 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
         let Some(force) = &mut trial.force else { continue };
         let [shown, acted] = [shown, &acted].map(|fit| fit.model.predicted(&fit.values, looked_at, number));
         let added: Vec<f64> = shown.iter().zip(acted).map(|(shown, acted)| shown - acted).collect();
-        let clock: Vec<f64> = trial.time.iter().map(|time| time - trial.time[0]).collect();
+        // Means of rows begin after the first row and end before the last.
+        let [first, last] = [0, looked_at.len() - 1].map(|row| looked_at.time[row]);
+        let clock: Vec<f64> = trial.time.iter().map(|time| (time - trial.time[0]).clamp(first, last)).collect();
         let added = interpolated(&looked_at.time, &added, &clock);
         force.iter_mut().zip(added).for_each(|(force, added)| *force -= added);
     }
@@ -48,7 +52,7 @@ mod tests {
     use crate::diagnose::contact::outcome::identify;
     use crate::diagnose::contact::testing::{FORCE_NOISE, TestContact};
 
-    /// A sensor that shows no more than 2 N of a contact that pushes with up to 3 N: the drive is told of the 3 N.
+    /// A sensor that shows no more than 2 N of a contact that pushes harder: the drive is told of all of it.
     #[test]
     fn what_a_clipped_reading_misses_is_given_back() {
         let clipped = TestContact { limit: 2.0, ..TestContact::PLAIN };

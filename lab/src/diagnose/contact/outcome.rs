@@ -16,6 +16,7 @@ use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::diagnose::verdict::Verdict;
 use crate::recording::Recording;
+use crate::recording::assemble::interpolated;
 
 /// A set of effects that the recordings do not tell from the answer.
 #[derive(Debug, Clone)]
@@ -68,17 +69,12 @@ impl Outcome {
     pub fn compare_with(&mut self, simulations: &[Recording]) {
         for ((trial, run), residual) in self.trials.iter().zip(simulations).zip(&mut self.residuals[0]) {
             let Some(force) = &run.force else { continue };
-            let origin = run.time.first().copied().unwrap_or(0.0);
-            let mut next = 1;
-            for (row, rest) in residual.iter_mut().enumerate() {
-                let now = origin + trial.time[row];
-                while next + 1 < run.time.len() && run.time[next] < now {
-                    next += 1;
-                }
-                if let (Some(after), Some(before)) = (run.time.get(next), run.time.get(next - 1)) {
-                    let part = ((now - before) / (after - before)).clamp(0.0, 1.0);
-                    *rest = trial.force[row] - (force[next - 1] + part * (force[next] - force[next - 1]));
-                }
+            let [Some(first), Some(last)] = [run.time.first(), run.time.last()] else { continue };
+            // Where the simulation ends before the trial it stays as it ended.
+            let clock: Vec<f64> = trial.time.iter().map(|time| (first + time).min(*last)).collect();
+            let simulated = interpolated(&run.time, force, &clock);
+            for ((rest, measured), simulated) in residual.iter_mut().zip(&trial.force).zip(simulated) {
+                *rest = measured - simulated;
             }
         }
     }

@@ -93,7 +93,7 @@ static SPEC: EffectSpec = EffectSpec {
 };
 
 /// Branches that a power law of time is made of, and the factor between their times: six decades in all. At an exponent of 0.25 the
-/// sum of exponentials swings by a thousandth about the power law (Poisson's sum: 2 |Gamma(a + 2 pi i / ln factor)| / Gamma(a)).
+/// sum of exponentials swings by 1.6 thousandths about the power law (Poisson's sum: 2 |Gamma(a + 2 pi i / ln factor)| / Gamma(a)).
 const POWER_BRANCHES: usize = 10;
 const POWER_SPACING: f64 = 4.641_588_833_612_779;
 
