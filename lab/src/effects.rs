@@ -70,8 +70,9 @@ pub trait Effect: Sync {
         None
     }
 
-    /// Whether form `form` with `values` is what the effect's statement says, and no other law in its clothes.
-    fn is_itself(&self, _form: usize, _values: &[f64]) -> bool {
+    /// Whether form `form` with `values` is what the effect's statement says, and no other law in its clothes, where the tool goes
+    /// `deepest` below the surface, m or rad.
+    fn is_itself(&self, _form: usize, _values: &[f64], _deepest: f64) -> bool {
         true
     }
 

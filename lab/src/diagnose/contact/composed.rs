@@ -5,13 +5,10 @@
 
 use rayon::prelude::*;
 
-use super::fit::{Effort, Fit, Rest};
+use super::fit::{Effort, Fit};
 use super::model::OwnValues;
 use super::selection::{Search, sorted_names, without_term};
 use crate::diagnose::term::Term;
-
-/// Composed laws that are fitted to the end.
-const POLISHED: usize = 3;
 
 /// Laws of the spring, one of which a memory is composed with even where none was found beside it: a spring bends by the one or the other.
 const SPRINGS: [&str; 2] = ["nonlinear_stiffness", "layered_stiffness"];
@@ -59,18 +56,10 @@ impl Search<'_> {
         let lowers: Vec<Fit> = lowers.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
         let is_upper =
             |term: &Term| term.name() == upper_name && term.effect.builds_on(term.form).contains(&lower_name);
-        let both = lowers.iter().flat_map(|base| self.promises(base, &is_upper));
-        let both: Vec<_> = both.collect();
-        let mut both: Vec<Fit> = both.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
-        let Some(least) = both.iter().min_by(|a, b| a.energy.total_cmp(&b.energy)) else { return Vec::new() };
-        let rest = Rest::of(&self.coarse, least);
-        both.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
-        both.truncate(POLISHED);
-        let to_the_end = |fit: &Fit| {
-            let fit = self.coarse.fit(&fit.model, &fit.values, Effort::FULL);
-            self.data.fit(&fit.model, &fit.values, Effort::FULL)
-        };
-        both.par_iter().map(to_the_end).collect()
+        let both: Vec<_> = lowers.iter().flat_map(|base| self.promises(base, &is_upper)).collect();
+        let both = both.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
+        // Each form for itself: which of them the other effects leave standing is told later, on every row.
+        self.to_the_end(self.coarsely_polished(both))
     }
 }
 

@@ -259,7 +259,7 @@ impl ContactModel {
         let contact =
             Contact { surface: 0.0, stiffness: values[index::STIFFNESS], damping: 0.0, bilateral: self.bilateral };
         let mut law = ContactSimulator::new(contact, &held);
-        let depth = self.scales.positions[1] - values[index::SURFACE];
+        let depth = self.deepest(values);
         let (mut highest, mut fall) = (0.0f64, 0.0f64);
         for point in 0..PATH_POINTS {
             let position = depth * point as f64 / (PATH_POINTS - 1) as f64;
@@ -294,12 +294,18 @@ impl ContactModel {
         })
     }
 
+    /// Deepest that the tool went below the surface, or farthest from it where it is clamped, m or rad.
+    fn deepest(&self, values: &[f64]) -> f64 {
+        let [low, high] = self.scales.positions.map(|position| position - values[index::SURFACE]);
+        if self.bilateral { high.max(-low) } else { high }
+    }
+
     /// Whether each effect's values are what its statement says.
     #[must_use]
     pub fn is_as_stated(&self, values: &[f64]) -> bool {
         self.terms.iter().enumerate().all(|(nth, term)| {
             let start = self.first_value_of(nth);
-            term.effect.is_itself(term.form, &values[start..start + self.count_of(term)])
+            term.effect.is_itself(term.form, &values[start..start + self.count_of(term)], self.deepest(values))
         })
     }
 

@@ -135,11 +135,12 @@ impl Search<'_> {
             && worth.share > share
             && worth.part_of_all > part
             && worth.part_of_force > LEAST_PART_OF_FORCE
-            && (worth.vuong > LEAST_VUONG || (worth.share > LEAST_TOLD_SHARE && worth.left_before > FAR_FROM_NOISE))
+            && is_told(&worth)
     }
 
     /// Whether `fit` is a law that its effects stand for: no value at the end of what the recordings show, none by which an effect is not
-    /// what it is called, no wave that has slid into step with the motion, and no spring whose force falls on the way in, unless the rig file has one.
+    /// what it is called, no wave that has slid into step with the motion, and no spring whose force falls on the way in, unless the rig
+    /// file has one.
     fn is_admissible(&self, fit: &Fit) -> bool {
         let falls = |fit: &Fit| fit.model.has_falling_spring(&fit.values);
         let mut frequencies = fit.model.frequencies(&fit.values).into_iter();
@@ -149,8 +150,9 @@ impl Search<'_> {
             && (!falls(fit) || falls(&self.nominal))
     }
 
-    /// Whether the recordings cannot distinguish the laws of two sets of effects, whatever they leave: at one speed each way and without a hold a Maxwell
-    /// branch, `branch_stiffness v relaxation_time (1 - exp(-t / relaxation_time))` after a reversal, is Dahl's loop over `v t`.
+    /// Whether the recordings cannot distinguish the laws of two sets of effects, whatever they leave: at one speed each way and
+    /// without a hold a Maxwell branch, `branch_stiffness v relaxation_time (1 - exp(-t / relaxation_time))` after a reversal, is Dahl's
+    /// loop over `v t`.
     #[must_use]
     pub fn is_one_law(&self, one: &ContactModel, other: &ContactModel) -> bool {
         let kinds = |model: &ContactModel| {
@@ -169,7 +171,7 @@ impl Search<'_> {
     }
 
     /// Squares that are left, in nats under `rest`, with what each value has to earn.
-    pub(super) fn price(&self, fit: &Fit, rest: &Rest) -> f64 {
+    fn price(&self, fit: &Fit, rest: &Rest) -> f64 {
         0.5 / (rest.power * rest.correlated_rows) * fit.energy + self.price_of_value(rest) * free(fit) as f64
     }
 
@@ -256,8 +258,9 @@ impl Search<'_> {
         tried
     }
 
-    /// What each effect that is `asked` for promises beside `base`, the best first: from where `base` stands, and where much is missing from other surfaces,
-    /// because what is missing bends the nominal values, and what a motion can show depends on where the contact begins.
+    /// What each effect that is `asked` for promises beside `base`, the best first: from where `base` stands, and where much is missing
+    /// from other surfaces, because what is missing bends the nominal values, and what a motion can show depends on where the contact
+    /// begins.
     pub(super) fn promises(&self, base: &Fit, asked: &(dyn Fn(&Term) -> bool + Sync)) -> Vec<(Promise, Fit)> {
         let mut bases = vec![base.clone()];
         if !base.model.bilateral && base.energy > FAR_ENERGY * self.coarse.expected() {
@@ -296,14 +299,23 @@ impl Search<'_> {
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
     /// as well the one with the fewest is polished, and leaves room for other effects.
-    fn polished(&self, mut quick: Vec<Fit>) -> Vec<Fit> {
+    fn polished(&self, quick: Vec<Fit>) -> Vec<Fit> {
+        self.to_the_end(distinct(self.coarsely_polished(quick)))
+    }
+
+    /// The best of `quick` fitted to the end on the means of rows, the best first at the price of their values.
+    pub(super) fn coarsely_polished(&self, mut quick: Vec<Fit>) -> Vec<Fit> {
         let Some(least) = quick.iter().min_by(|a, b| a.energy.total_cmp(&b.energy)) else { return Vec::new() };
         let rest = Rest::of(&self.coarse, least);
         quick.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
         let mut fits: Vec<Fit> = quick.into_iter().take(COARSELY_POLISHED).collect();
         fits.par_iter_mut().for_each(|fit| *fit = self.coarse.fit(&fit.model, &fit.values, Effort::FULL));
         fits.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
-        let mut fits = distinct(fits);
+        fits
+    }
+
+    /// The first of `fits` on every row.
+    pub(super) fn to_the_end(&self, mut fits: Vec<Fit>) -> Vec<Fit> {
         fits.truncate(POLISHED);
         fits.par_iter().map(|fit| self.data.fit(&fit.model, &fit.values, Effort::FULL)).collect()
     }
@@ -379,7 +391,7 @@ impl Search<'_> {
             let worth = self.worth(&best, other);
             more > 0
                 && !other.model.terms.is_empty()
-                && (worth.gain < LEAST_GAIN + worth.price * more as f64 || worth.vuong < LEAST_VUONG)
+                && (worth.gain < LEAST_GAIN + worth.price * more as f64 || !is_told(&worth))
                 && self.is_worth(other, &self.nominal)
         };
         let simpler =
@@ -396,6 +408,12 @@ impl Search<'_> {
         }
         self.data.fit(&model, &values, Effort::FULL)
     }
+}
+
+/// Whether the recordings tell two laws apart: block by block, or, where few blocks speak, because the one leaves next to nothing of what the
+/// other leaves far above the noise.
+fn is_told(worth: &Worth) -> bool {
+    worth.vuong > LEAST_VUONG || (worth.share > LEAST_TOLD_SHARE && worth.left_before > FAR_FROM_NOISE)
 }
 
 /// Values that are fitted.

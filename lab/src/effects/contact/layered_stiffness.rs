@@ -75,8 +75,8 @@ static SPEC: EffectSpec = EffectSpec {
     source: "springs in series and parallel; bilinear stiffness",
 };
 
-/// Transitions that the boundary lies below the surface at the least: at three, one part in twenty of what is added acts at the surface,
-/// 1 / (1 + exp(3)). A spring that bends from the surface on is no layer.
+/// Transitions that the boundary lies below the surface, and above the deepest point, at the least: at three, one part in twenty of what
+/// is added acts at the surface, 1 / (1 + exp(3)), and one is missing at the deepest point. A spring that bends all the way is no layer.
 const LEAST_TRANSITIONS: f64 = 3.0;
 
 impl Effect for LayeredStiffness {
@@ -102,8 +102,8 @@ impl Effect for LayeredStiffness {
         depths.map(|depth| Start::sized(&[added, depth, 0.05 * scene.depth], &[0])).collect()
     }
 
-    fn is_itself(&self, form: usize, values: &[f64]) -> bool {
-        form != 1 || values[2] * LEAST_TRANSITIONS < values[1]
+    fn is_itself(&self, form: usize, values: &[f64], deepest: f64) -> bool {
+        form != 1 || values[2] * LEAST_TRANSITIONS < values[1].min(deepest - values[1])
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
@@ -134,9 +134,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_boundary_as_wide_as_it_is_deep_is_no_layer() {
-        assert!(LayeredStiffness.is_itself(1, &[500.0, 3e-3, 0.9e-3]) && LayeredStiffness.is_itself(0, &[500.0, 3e-3]));
-        assert!(!LayeredStiffness.is_itself(1, &[500.0, 3e-3, 1.1e-3]));
-        assert!(!LayeredStiffness.is_itself(1, &[500.0, 3e-3, f64::NAN]));
+    fn a_boundary_that_bends_all_the_way_is_no_layer() {
+        let is_layer =
+            |boundary: f64, transition: f64| LayeredStiffness.is_itself(1, &[500.0, boundary, transition], 6e-3);
+        assert!(is_layer(3e-3, 0.9e-3));
+        assert!(!is_layer(2e-3, 0.7e-3), "it bends from the surface on");
+        assert!(!is_layer(4e-3, 0.7e-3), "it bends to the deepest point");
+        assert!(!is_layer(8e-3, 0.1e-3), "it was not reached");
+        assert!(!is_layer(3e-3, f64::NAN));
+        assert!(LayeredStiffness.is_itself(0, &[500.0, 5e-3], 6e-3), "a sharp one has no width");
     }
 }
