@@ -1,5 +1,7 @@
 //! What no law of the list explains, learned as a curve over depth and direction, and told in words.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::criteria::{LEAST_HELD_OUT_SHARE, NOTABLE_POWER};
 use super::fit::{Data, Fit, Rest};
 use super::held_out::{Folds, rms};
@@ -20,10 +22,21 @@ pub struct LearnedCurve {
     pub residual: Vec<Vec<f64>>,
     /// Share of the power above the noise that it takes there of what the law without it leaves.
     pub held_out_share: f64,
-    /// Deviation of the force at each knot: of the mean at all of them, and of the loop.
-    pub deviations: Vec<f64>,
-    /// Paths in and out by the law with it, from shallow to deep: depth, force on the way in, force on the way out.
-    pub paths: Vec<[f64; 3]>,
+    /// Covariance of the forces at the knots: of the mean at all of them, and of the loop.
+    pub covariance: DMatrix<f64>,
+    /// In and out by the law with it, from shallow to deep.
+    pub paths: Vec<PathPoint>,
+}
+
+/// A depth on the ways in and out.
+#[derive(Debug, Clone, Default)]
+pub struct PathPoint {
+    /// m or rad below the surface.
+    pub depth: f64,
+    /// Force on the way in and on the way out, N or N m.
+    pub force: [f64; 2],
+    /// Their derivatives by the forces at the knots.
+    pub by_knots: [DVector<f64>; 2],
 }
 
 impl LearnedCurve {
@@ -31,23 +44,47 @@ impl LearnedCurve {
     #[must_use]
     pub fn intervals(&self, law: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let values = &self.fit.values;
-        let forces = values.len() - self.deviations.len();
+        let deviations = self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt());
+        let forces = values.len() - deviations.len();
         let mut ends: Vec<[f64; 2]> = law.to_vec();
         ends.extend(values[law.len()..forces].iter().map(|value| [*value; 2]));
         let of_force = |(value, deviation): (&f64, &f64)| {
             let half = NORMAL_97_5 * deviation;
             [value - half, value + half]
         };
-        ends.extend(values[forces..].iter().zip(&self.deviations).map(of_force));
+        ends.extend(values[forces..].iter().zip(&deviations).map(of_force));
         ends
     }
 
-    /// Half-width of the 95 % interval of the force midway between the paths, N or N m: the median over the knots, and the greatest.
+    /// Half-width of the 95 % interval of the force on the way in, N or N m: the median over the depth, and the greatest.
     #[must_use]
     pub fn half_widths(&self) -> [f64; 2] {
-        let mut mean: Vec<f64> = self.deviations[..LEARNED_KNOTS].to_vec();
-        mean.sort_by(f64::total_cmp);
-        [LEARNED_KNOTS / 2, LEARNED_KNOTS - 1].map(|at| NORMAL_97_5 * mean[at])
+        let mut widths: Vec<f64> = self.paths.iter().map(|point| self.half_width(&point.by_knots[0])).collect();
+        widths.sort_by(f64::total_cmp);
+        [widths[widths.len() / 2], widths[widths.len() - 1]]
+    }
+
+    /// Half-width of the 95 % interval of what changes with the forces at the knots by `slope`.
+    fn half_width(&self, slope: &DVector<f64>) -> f64 {
+        NORMAL_97_5 * (&self.covariance * slope).dot(slope).max(0.0).sqrt()
+    }
+
+    /// What the paths look like, of which the recordings tell the sign.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        let shape = shape(&self.paths);
+        let slope = |[way_in, way_out]: &[DVector<f64>; 2]| way_in - way_out;
+        let fall = |softening: &Softening| {
+            let [top, bottom] = softening.at.map(|at| &self.paths[at].by_knots[0]);
+            self.half_width(&(top - bottom))
+        };
+        let loops = self.paths.iter().map(|point| slope(&point.by_knots));
+        let mean = loops.sum::<DVector<f64>>() / self.paths.len() as f64;
+        Shape {
+            softening: shape.softening.filter(|softening| softening.fall > fall(softening)),
+            loop_force: shape.loop_force.filter(|force| force.abs() > self.half_width(&mean)),
+            ..shape
+        }
     }
 }
 
@@ -91,6 +128,10 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     let (spline, penalty, _) = splines
         .filter_map(|spline| spline.best_penalty().map(|(penalty, left)| (spline, penalty, left)))
         .min_by(|a, b| a.2.total_cmp(&b.2))?;
+    let first = spline.values(penalty, Part::All)?;
+    let fit = Fit { model: model.clone(), values: first, energy: 0.0 };
+    let spline = spline.where_left(&Rest::of(data, &fit));
+    let (penalty, _) = spline.best_penalty()?;
     let taught = [spline.values(penalty, Part::FirstHalf)?, spline.values(penalty, Part::SecondHalf)?];
     let values = spline.values(penalty, Part::All)?;
     let (left, unseen) = (folds.held_out(data, law), folds.judged(data, &model, taught));
@@ -105,8 +146,8 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     let energy = energy(&data.weighted_residual(&model, &values));
     let fit = Fit { model, values, energy };
     let paths = paths(&fit, &data.trials[0], [surface + from, surface + high]);
-    let deviations = spline.deviations(penalty, &Rest::of(data, &fit))?;
-    Some(LearnedCurve { fit, residual: unseen.residual, held_out_share: held_out_share.min(1.0), paths, deviations })
+    let covariance = spline.covariance(penalty, &Rest::of(data, &fit))?;
+    Some(LearnedCurve { fit, residual: unseen.residual, held_out_share: held_out_share.min(1.0), covariance, paths })
 }
 
 /// Where the knots lie between `ends`, from `surface` inwards: half of them as the way, half as the force goes, so that a stop that is
@@ -147,7 +188,7 @@ fn places(trials: &[ContactTrial], surface: f64, ends: [f64; 2]) -> Vec<f64> {
 }
 
 /// In from `ends[0]` to `ends[1]` and out again, so slowly that nothing asks for the speed.
-fn paths(fit: &Fit, like: &ContactTrial, ends: [f64; 2]) -> Vec<[f64; 3]> {
+fn paths(fit: &Fit, like: &ContactTrial, ends: [f64; 2]) -> Vec<PathPoint> {
     let way_in: Vec<f64> =
         (0..POINTS).map(|at| ends[0] + (ends[1] - ends[0]) * at as f64 / (POINTS - 1) as f64).collect();
     let position: Vec<f64> = way_in.iter().chain(way_in.iter().rev()).copied().collect();
@@ -165,43 +206,67 @@ fn paths(fit: &Fit, like: &ContactTrial, ends: [f64; 2]) -> Vec<[f64; 3]> {
         ..like.clone()
     };
     let force = fit.model.predicted(&fit.values, &trial, 0);
+    let knots = fit.values.len() - 2 * LEARNED_KNOTS;
+    // The force is linear in them: any step does.
+    let step = 1e-2 * fit.model.scales.force;
+    let moved: Vec<Vec<f64>> = (knots..fit.values.len())
+        .map(|at| {
+            let mut values = fit.values.clone();
+            values[at] += step;
+            fit.model.predicted(&values, &trial, 0)
+        })
+        .collect();
+    let by_knots = |row: usize| DVector::from_fn(moved.len(), |at, _| (moved[at][row] - force[row]) / step);
     let surface = fit.values[index::SURFACE];
-    way_in.iter().enumerate().map(|(at, place)| [place - surface, force[at], force[rows - 1 - at]]).collect()
+    let point = |(at, place): (usize, &f64)| {
+        let rows = [at, rows - 1 - at];
+        PathPoint { depth: place - surface, force: rows.map(|row| force[row]), by_knots: rows.map(by_knots) }
+    };
+    way_in.iter().enumerate().map(point).collect()
 }
 
 /// What the paths look like.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// Where the force falls while the tool goes on in: from, to, and by how much; `None` where it nowhere does.
-    pub softening: Option<[f64; 3]>,
-    /// By how much the way out lies below the way in, mean over the depth, and root mean square about that mean.
-    pub loop_force: [f64; 2],
+    /// Where the force falls most while the tool goes on in; `None` where it nowhere does.
+    pub softening: Option<Softening>,
+    /// By how much the way out lies below the way in, mean over the depth; `None` where it does not.
+    pub loop_force: Option<f64>,
     /// Range of the force on the way in.
     pub range: f64,
 }
 
+/// A force that falls while the tool goes on in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Softening {
+    /// Points of the path between which it does.
+    pub at: [usize; 2],
+    /// Their depths.
+    pub between: [f64; 2],
+    /// By how much, N or N m.
+    pub fall: f64,
+}
+
 /// The shape of `paths`.
-#[must_use]
-pub fn shape(paths: &[[f64; 3]]) -> Shape {
+fn shape(paths: &[PathPoint]) -> Shape {
     let count = paths.len().max(1) as f64;
-    let mean = paths.iter().map(|[_, into, out]| into - out).sum::<f64>() / count;
-    let spread = (paths.iter().map(|[_, into, out]| (into - out - mean).powi(2)).sum::<f64>() / count).sqrt();
+    let mean = paths.iter().map(|PathPoint { force: [into, out], .. }| into - out).sum::<f64>() / count;
+    let way_in = || paths.iter().map(|point| point.force[0]);
     let (low, high) =
-        paths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), row| (low.min(row[1]), high.max(row[1])));
+        way_in().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), force| (low.min(force), high.max(force)));
     // The largest fall from any force before.
-    let (mut top, mut softening): (Option<[f64; 3]>, Option<[f64; 3]>) = (None, None);
-    for row in paths {
-        if top.is_none_or(|top| row[1] >= top[1]) {
-            top = Some(*row);
+    let mut top = 0;
+    let mut softening: Option<Softening> = None;
+    for (at, force) in way_in().enumerate() {
+        if force >= paths[top].force[0] {
+            top = at;
         }
-        if let Some(top) = top {
-            let fall = top[1] - row[1];
-            if fall > softening.map_or(0.0, |most| most[2]) {
-                softening = Some([top[0], row[0], fall]);
-            }
+        let fall = paths[top].force[0] - force;
+        if fall > softening.map_or(0.0, |most| most.fall) {
+            softening = Some(Softening { at: [top, at], between: [top, at].map(|at| paths[at].depth), fall });
         }
     }
-    Shape { softening, loop_force: [mean, spread], range: high - low }
+    Shape { softening, loop_force: (mean != 0.0).then_some(mean), range: high - low }
 }
 
 #[cfg(test)]
@@ -209,17 +274,26 @@ mod tests {
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
     use crate::diagnose::contact::nominal::nominal_fit;
+    use crate::recording::Recording;
 
     #[test]
     fn a_pocket_and_another_way_back_are_read_from_the_paths() {
-        let paths: Vec<[f64; 3]> = (0..=100)
+        let paths: Vec<PathPoint> = (0..=100)
             .map(|at| {
                 let depth = f64::from(at) / 100.0;
                 let into = if depth < 0.4 { depth } else { 0.8 - depth };
-                [depth, if depth < 0.6 { into } else { depth - 0.4 }, depth - 0.7]
+                PathPoint {
+                    depth,
+                    force: [if depth < 0.6 { into } else { depth - 0.4 }, depth - 0.7],
+                    ..PathPoint::default()
+                }
             })
             .collect();
-        let Shape { softening: Some([from, to, fall]), loop_force: [mean, _], range } = shape(&paths) else { panic!() };
+        let Shape { softening: Some(Softening { between: [from, to], fall, .. }), loop_force: Some(mean), range } =
+            shape(&paths)
+        else {
+            panic!()
+        };
         // From 0.4 at 0.4 to 0.2 at 0.6, and a hundredth of a step either way.
         assert!(
             (from - 0.4).abs() < 0.015 && (to - 0.6).abs() < 0.015 && (fall - 0.2).abs() < 0.025,
@@ -230,24 +304,32 @@ mod tests {
 
     #[test]
     fn a_line_neither_softens_nor_returns_elsewhere() {
-        let paths: Vec<[f64; 3]> =
-            (0..50).map(|at| [f64::from(at), 2.0 * f64::from(at), 2.0 * f64::from(at)]).collect();
+        let point = |depth: f64| PathPoint { depth, force: [2.0 * depth; 2], ..PathPoint::default() };
+        let paths: Vec<PathPoint> = (0..50).map(|at| point(f64::from(at))).collect();
         let shape = shape(&paths);
-        assert_eq!((shape.softening, shape.loop_force), (None, [0.0, 0.0]));
+        assert_eq!((shape.softening, shape.loop_force), (None, None));
+    }
+
+    /// Recordings of a spring with a pocket that no law of the list has, in as far as each goes on.
+    fn with_a_pocket(seeds: [u64; 2], goes_on: impl Fn(&Recording) -> usize) -> Vec<ContactTrial> {
+        let pocket = |x: f64| if x > 0.0 { -0.5 * (-((x - 4e-3) / 1e-3).powi(2)).exp() } else { 0.0 };
+        let trial = |seed: u64| {
+            let mut recording = TestContact::PLAIN.recording(seed);
+            let rows = goes_on(&recording);
+            let Recording { time, position, force, .. } = &mut recording;
+            [time, position, force.as_mut().unwrap()].into_iter().for_each(|column| column.truncate(rows));
+            let mut trial = TestContact::seen(&recording);
+            let added: Vec<f64> = trial.position.iter().map(|x| pocket(*x)).collect();
+            trial.force.iter_mut().zip(added).for_each(|(force, pocket)| *force += pocket);
+            trial
+        };
+        seeds.map(trial).to_vec()
     }
 
     /// A pocket that no law of the list has: the curve takes what a spring leaves, on the trial that taught nothing.
     #[test]
     fn a_pocket_is_learned_from_one_trial_and_found_in_the_other() {
-        let trials: Vec<ContactTrial> = [1, 2]
-            .map(|seed| {
-                let mut trial = TestContact::PLAIN.trial(seed);
-                let pocket = |x: f64| if x > 0.0 { -0.5 * (-((x - 4e-3) / 1e-3).powi(2)).exp() } else { 0.0 };
-                let added: Vec<f64> = trial.position.iter().map(|x| pocket(*x)).collect();
-                trial.force.iter_mut().zip(added).for_each(|(force, pocket)| *force += pocket);
-                trial
-            })
-            .to_vec();
+        let trials = with_a_pocket([1, 2], |recording| recording.time.len());
         let data = Data::new(&trials);
         let law = nominal_fit(&data, &TestContact::nominal());
         let curve = learned(&data, &law).unwrap();
@@ -264,8 +346,26 @@ mod tests {
         assert!(
             low < curve.fit.values[forces + LEARNED_KNOTS / 2] && curve.fit.values[forces + LEARNED_KNOTS / 2] < high
         );
-        let [from, to, fall] = shape(&curve.paths).softening.unwrap();
+        let Softening { between: [from, to], fall, .. } = curve.shape().softening.unwrap();
         assert!((2e-3..4.5e-3).contains(&from) && (3e-3..6e-3).contains(&to) && fall > 0.02, "{from} {to} {fall}");
+    }
+
+    /// Of a tool that goes in and never comes out the way back is not known, and nothing is told of it.
+    #[test]
+    fn without_a_way_out_there_is_no_loop() {
+        let deepest = |recording: &Recording| recording.position.iter().take_while(|x| **x < 7e-3).count();
+        let trials = with_a_pocket([1, 2], deepest);
+        let data = Data::new(&trials);
+        let law = nominal_fit(&data, &TestContact::nominal());
+        let curve = learned(&data, &law).unwrap();
+        let shape = curve.shape();
+        assert_eq!(shape.loop_force, None);
+        let fall = shape.softening.unwrap().fall;
+        // From 0.72 N at 2.8 mm to 0.65 N at 3.7 mm; either end by the lines between knots, as above.
+        assert!((fall - 0.07).abs() < 0.025, "{fall}");
+        let half = &curve.fit.values[curve.fit.values.len() - LEARNED_KNOTS..];
+        let largest = half.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+        assert!(largest < curve.fit.model.scales.force, "{half:?}");
     }
 
     #[test]

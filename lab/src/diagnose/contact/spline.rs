@@ -33,14 +33,14 @@ pub struct Spline {
     before: Vec<f64>,
     /// Of both halves.
     halves: [Normal; 2],
+    /// What is known before any row of each force of the mean, and of the loop: one over its variance, in squares of the weighted
+    /// residual.
+    prior: [f64; 2],
 }
 
 /// Least and greatest penalty of second differences, in mean squares of a column, and how many are tried between them.
 const PENALTIES: [f64; 2] = [1e-6, 10.0];
 const PENALTY_COUNT: usize = 8;
-
-/// Weight of a force itself beside its second difference: a curve of which nothing is seen, as a loop without a way back, is zero.
-const SIZE_WEIGHT: f64 = 1e-6;
 
 /// Forces at the knots: of the mean, and of the loop.
 const FORCES: usize = 2 * LEARNED_KNOTS;
@@ -69,7 +69,15 @@ impl Spline {
             };
             Normal::of(&columns.iter().map(|column| taken(column)).collect::<Vec<_>>(), &taken(&target))
         });
-        Self { before, halves }
+        Self { before, halves, prior: [model.scales.force.powi(-2); 2] }
+    }
+
+    /// The same with what is known of the loop counted against rows of which one in `rest` tells no more than one: it deviates by no more
+    /// than the range of the recorded force. A loop without a way back is none, and what was seen on the way in is the mean's.
+    #[must_use]
+    pub fn where_left(self, rest: &Rest) -> Self {
+        let [mean, half] = self.prior;
+        Self { prior: [mean, half * rest.power * rest.correlated_rows], ..self }
     }
 
     /// The penalty under which either half leaves least of the other, and what that is.
@@ -91,13 +99,12 @@ impl Spline {
         Some(self.before.iter().chain(forces.iter()).copied().collect())
     }
 
-    /// Deviation of each force: of the posterior whose prior the penalty is (G. Wahba, *J. R. Stat. Soc. B* 45, 1983), rows that tell no
+    /// Covariance of the forces: of the posterior whose prior the penalty is (G. Wahba, *J. R. Stat. Soc. B* 45, 1983), rows that tell no
     /// more than one in `rest` counted once.
     #[must_use]
-    pub fn deviations(&self, penalty: f64, rest: &Rest) -> Option<Vec<f64>> {
+    pub fn covariance(&self, penalty: f64, rest: &Rest) -> Option<DMatrix<f64>> {
         let (factors, _) = self.factors(penalty, Part::All)?;
-        let variance = factors.inverse().diagonal() * (rest.power * rest.correlated_rows);
-        Some(variance.iter().map(|variance| variance.max(0.0).sqrt()).collect())
+        Some(factors.inverse() * (rest.power * rest.correlated_rows))
     }
 
     fn forces(&self, penalty: f64, part: Part) -> Option<DVector<f64>> {
@@ -113,7 +120,9 @@ impl Spline {
             Part::All => (&first.matrix + &second.matrix, &first.right + &second.right),
         };
         let size = (first.matrix.trace() + second.matrix.trace()) / FORCES as f64;
-        Some(((matrix + roughness() * (penalty * size)).cholesky()?, right))
+        let prior = DVector::from_fn(FORCES, |at, _| self.prior[at / LEARNED_KNOTS]);
+        let known = roughness() * (penalty * size) + DMatrix::from_diagonal(&prior);
+        Some(((matrix + known).cholesky()?, right))
     }
 }
 
@@ -137,9 +146,9 @@ impl Normal {
     }
 }
 
-/// Sum of squares of the second differences of either curve, as a quadratic form of its forces, and [`SIZE_WEIGHT`] of their own.
+/// Sum of squares of the second differences of either curve, as a quadratic form of its forces.
 fn roughness() -> DMatrix<f64> {
-    let mut form = DMatrix::identity(FORCES, FORCES) * SIZE_WEIGHT;
+    let mut form = DMatrix::zeros(FORCES, FORCES);
     for start in [0, LEARNED_KNOTS] {
         for first in start..start + LEARNED_KNOTS - 2 {
             let difference = [(first, 1.0), (first + 1, -2.0), (first + 2, 1.0)];
@@ -177,7 +186,8 @@ mod tests {
             let spline = Spline::of(&data, &law, &model, 1e-3, &places, &Folds::of(&data));
             let values = spline.values(1e-6, Part::All).unwrap();
             let fit = Fit { model: model.clone(), values: values.clone(), energy: 0.0 };
-            let deviations = spline.deviations(1e-6, &Rest::of(&data, &fit)).unwrap();
+            let covariance = spline.covariance(1e-6, &Rest::of(&data, &fit)).unwrap();
+            let deviations = covariance.diagonal().iter().map(|variance| variance.sqrt()).collect();
             [values[values.len() - FORCES..].to_vec(), deviations]
         };
         let [reference, deviations] = learned(&first);
@@ -197,7 +207,7 @@ mod tests {
     fn a_straight_curve_is_not_rough_and_a_kink_is() {
         let of = |force: &dyn Fn(f64) -> f64| {
             let forces = DVector::from_fn(FORCES, |at, _| force((at % LEARNED_KNOTS) as f64));
-            (roughness() * &forces).dot(&forces) - SIZE_WEIGHT * forces.dot(&forces)
+            (roughness() * &forces).dot(&forces)
         };
         assert!(of(&|at| 3.0 * at - 1.0).abs() < 1e-9);
         // One second difference of two in either curve.

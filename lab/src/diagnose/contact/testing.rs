@@ -86,8 +86,13 @@ impl TestContact {
 
     /// The same as the model sees it.
     pub fn trial(&self, seed: u64) -> ContactTrial {
+        Self::seen(&self.recording(seed))
+    }
+
+    /// `recording` as the model sees it.
+    pub fn seen(recording: &Recording) -> ContactTrial {
         let channel = |noise: f64| Channel { resolution: 0.0, noise };
         let figures = Figures { position: channel(POSITION_NOISE), force: Some(channel(FORCE_NOISE)), effort: None };
-        ContactTrial::new(&self.recording(seed), figures, 1).unwrap()
+        ContactTrial::new(recording, figures, 1).unwrap()
     }
 }

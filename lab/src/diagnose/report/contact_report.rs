@@ -8,7 +8,7 @@ use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, L
 use super::summary;
 use crate::diagnose::contact::fit::Data;
 use crate::diagnose::contact::held_out::rms;
-use crate::diagnose::contact::learned::{self, LearnedCurve};
+use crate::diagnose::contact::learned::LearnedCurve;
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::outcome::Outcome;
 use crate::diagnose::contact::trial::ContactTrial;
@@ -203,25 +203,27 @@ fn unknown(locations: &[Location], beside: bool) -> Physics {
 /// What a learned curve looks like: only what stands out of the noise.
 fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate: Coordinate) -> String {
     let (force, length) = (coordinate.force_unit(), coordinate.position_unit());
-    let shape = learned::shape(&curve.paths);
+    let shape = curve.shape();
     let notable = (3.0 * outcome.expected_noise).max(LEAST_FEATURE * shape.range);
     let share = quantity::percent(100.0 * share);
     let left = quantity::rounded(rms(&data(outcome), &curve.residual), force, 3);
     let mut text = format!(
         " A curve over depth and direction that is learned from the recordings takes {share} of it on held-out rows and leaves {left}"
     );
-    if let Some([from, to, fall]) = shape.softening.filter(|softening| softening[2] > notable) {
-        let (fall, between) = (quantity::rounded(fall, force, 2), quantity::between(from, to, length));
+    if let Some(softening) = shape.softening.filter(|softening| softening.fall > notable) {
+        let [from, to] = softening.between;
+        let (fall, between) = (quantity::rounded(softening.fall, force, 2), quantity::between(from, to, length));
         text.push_str(&format!(": the force falls by {fall} between {between}, as in a click"));
     }
-    let [lower, _] = shape.loop_force;
-    if lower.abs() > notable {
+    if let Some(lower) = shape.loop_force.filter(|lower| lower.abs() > notable) {
         let side = if lower > 0.0 { "below" } else { "above" };
         let (joint, by) = (if text.contains(": ") { ";" } else { ":" }, quantity::rounded(lower.abs(), force, 2));
         text.push_str(&format!("{joint} the way out lies {by} {side} the way in, in the mean, however slow"));
     }
     let [usual, most] = curve.half_widths().map(|half| quantity::rounded(half, force, 2));
-    text + &format!(". It is known to ±{usual} at half of its knots and to ±{most} at all (95 %).")
+    text + &format!(
+        ". The force on the way in is known to ±{usual} at half of the depths and to ±{most} at all (95 %)."
+    )
 }
 
 fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
