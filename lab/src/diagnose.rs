@@ -5,6 +5,7 @@
 //! what is left. [`report`] writes it down; [`experiment`] says which experiment would separate alternatives.
 
 pub mod acting_force;
+pub mod channels;
 pub mod check;
 pub mod command;
 pub mod contact;
@@ -23,16 +24,15 @@ pub mod verdict;
 
 use anyhow::{Result, bail};
 
+use channels::{Channels, Recorded};
 pub use command::{DiagnoseArgs, run};
 use signals::pauses;
 pub use signals::prepare::sensed;
 
-use crate::effects::{self, Place};
 use crate::error::InputError;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
-use drive::named::NamedEffect;
 use drive::outcome::Outcome;
 pub use report::diagnosis::Diagnosis;
 use report::diagnosis::PlotData;
@@ -72,67 +72,25 @@ pub fn diagnose(
     let uniform_trials = sensed(rig, origin, trials)?;
     let figures: Vec<Figures> = uniform_trials.iter().map(|trial| trial.figures).collect();
     let findings = check::check(rig, trials, &uniform_trials);
-    let known = effects::resolve_all(rig, origin)?;
-    let is_touching = contact::prepare::is_recorded(rig, trials);
     // Held at one depth a memory fades and a loop does not.
     let is_one_speed = ["one_speed", "no_hold"].iter().all(|code| findings.iter().any(|finding| finding.code == *code));
-    let by_force = |rig: &Rig| touched(rig, origin, trials, &figures, is_one_speed, say);
-    let mut contact = if is_touching { by_force(&contact_rig(rig, &[]))? } else { None };
-    let drive = drive::prepare::is_recorded(rig, trials).then(|| {
-        let acted = contact.as_ref().map(|contact| acting_force::as_it_acted(contact, trials));
-        identified(rig, acted.as_deref().unwrap_or(trials), known, seed, say)
-    });
-    let mut drive = drive.flatten();
-    let found = drive.as_ref().map(drive_report::found).unwrap_or_default();
-    let sensors: Vec<NamedEffect> =
-        found.into_iter().filter(|found| acting_force::CARRIED_BY_THE_DRIVE.contains(&found.name())).collect();
-    if is_touching && !sensors.is_empty() {
-        contact = by_force(&contact_rig(rig, &sensors))?;
-    }
+    let recorded = Recorded { rig, origin, trials, figures: &figures, is_one_speed, seed, say };
+    let channels = recorded.identified()?;
+    let felt = channels.finding();
+    let Channels { mut contact, drive, .. } = channels;
     if let Some(contact) = &mut contact {
         contact.compare_with(simulation);
-    }
-    if let (Some(contact), Some(drive)) = (&contact, &mut drive) {
-        drive.leave_to_the_contact(|name| is_told(contact, name));
     }
     let Some(((mut answer, pictures), improved)) = together(rig, contact.as_ref(), drive.as_ref()) else {
         bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
     };
-    answer.findings.splice(0..0, findings.into_iter().chain(divided.finding));
+    answer.findings.splice(0..0, findings.into_iter().chain(divided.finding).chain(felt));
     let alternatives = contact.as_ref().map(|contact| contact_report::alternative_rigs(&improved, contact));
     Ok(Found { answer, pictures, improved, alternatives: alternatives.unwrap_or_default() })
 }
 
 /// What a diagnosis needs.
 const NEEDED: &str = "a force in contact, or some hundred rows of an effort that moves the drive";
-
-/// What the recordings say of the drive; effects that the rig already holds are nominal.
-fn identified(
-    rig: &Rig,
-    trials: &[Recording],
-    known: Vec<effects::Resolved>,
-    seed: u64,
-    say: &dyn Fn(&str),
-) -> Option<Outcome> {
-    let nominal = drive::prepare::nominal(rig, trials, known)?;
-    drive::outcome::identify(drive::prepare::trials(rig, trials), &nominal, seed, say)
-}
-
-/// The rig without its drive, which has a model of its own; `sensors` is what that found of the force sensor, and known to the contact.
-fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {
-    let mut contact = rig.clone();
-    contact.drive = None;
-    contact.effects.retain(|table| effects::find(&table.name).is_none_or(|e| e.spec().place != Place::Drive));
-    contact.effects.extend(sensors.iter().map(|effect| drive_report::table(effect, rig.coordinate)));
-    contact
-}
-
-/// Whether the contact names `name`, or what a slow sensor and a late one have in common.
-fn is_told(contact: &contact::outcome::Outcome, name: &str) -> bool {
-    let terms = &contact.chosen.model.terms;
-    let names = |name: &str| contact.named.iter().any(|named| terms[named.at].name() == name);
-    names(name) || (name == "channel_delay" && names("force_lag"))
-}
 
 /// One report and one rig from those of the contact and of the drive.
 fn together(rig: &Rig, contact: Option<&contact::outcome::Outcome>, drive: Option<&Outcome>) -> Option<(Report, Rig)> {
@@ -149,22 +107,4 @@ fn together(rig: &Rig, contact: Option<&contact::outcome::Outcome>, drive: Optio
             Some((merge::merged(contact, drive, rig.coordinate), improved))
         }
     }
-}
-
-/// What the recordings say of the contact, by their force and position alone.
-///
-/// # Errors
-/// Effects in the rig file that cannot be.
-fn touched(
-    rig: &Rig,
-    origin: &str,
-    trials: &[Recording],
-    figures: &[Figures],
-    is_one_speed: bool,
-    say: &dyn Fn(&str),
-) -> Result<Option<contact::outcome::Outcome>> {
-    let known = effects::resolve_all(rig, origin)?;
-    let Some(nominal) = contact::prepare::nominal(rig, known) else { return Ok(None) };
-    let [fine, coarse] = contact::prepare::trials(trials, figures);
-    Ok(contact::outcome::identify(fine, &coarse, &nominal, is_one_speed, say))
 }

@@ -11,28 +11,40 @@ use crate::recording::assemble::interpolated;
 /// Effects of the force sensor that the drive tells better than the contact does: force and position alone show them as other values.
 pub const CARRIED_BY_THE_DRIVE: [&str; 2] = ["force_gain", "tool_inertia"];
 
-/// `trials` with the force as it acted, N or N m: what the named effects of the sensor add to the law's reading along the motion is taken
-/// off, in the means of rows that the contact was looked at in. The drive would take a zero for a load, and what a clipped reading
-/// misses for a force of its own.
+/// Names of the effects of the force sensor that the contact tells.
 #[must_use]
-pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
-    let shown = &contact.chosen;
+pub fn sensor_effects(contact: &Outcome) -> Vec<&'static str> {
+    sensor_terms(contact).into_iter().map(|at| contact.chosen.model.terms[at].name()).collect()
+}
+
+/// The named effects of the sensor, which stand at these places among the contact's terms.
+fn sensor_terms(contact: &Outcome) -> Vec<usize> {
     let is_of_sensor = |term: &Term| {
         let spec = term.effect.spec();
         spec.place == Place::Sensor && !CARRIED_BY_THE_DRIVE.contains(&spec.name)
     };
     let named = contact.named.iter().map(|named| named.at);
-    let mut sensors: Vec<usize> = named.filter(|at| is_of_sensor(&shown.model.terms[*at])).collect();
+    let mut sensors: Vec<usize> = named.filter(|at| is_of_sensor(&contact.chosen.model.terms[*at])).collect();
     sensors.sort_unstable();
+    sensors
+}
+
+/// `trials` with the force as it acted, N or N m: what the named effects of the sensor add to the law's reading along the motion is taken
+/// off, in the means of rows that the contact was looked at in. The drive would take a zero for a load, and what a clipped reading
+/// misses for a force of its own.
+#[must_use]
+pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
+    let sensors = sensor_terms(contact);
+    if sensors.is_empty() {
+        return trials.to_vec();
+    }
+    let shown = &contact.chosen;
     let mut acted = shown.clone();
     for at in sensors.iter().rev() {
         let (model, values) = without_term(&acted, *at);
         acted = Fit { model, values, ..acted };
     }
     let mut trials = trials.to_vec();
-    if sensors.is_empty() {
-        return trials;
-    }
     for (number, (trial, looked_at)) in trials.iter_mut().zip(&contact.trials).enumerate() {
         let Some(force) = &mut trial.force else { continue };
         let [shown, acted] = [shown, &acted].map(|fit| fit.model.predicted(&fit.values, looked_at, number));
@@ -49,6 +61,7 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::contact::circumstances::Circumstances;
     use crate::diagnose::contact::outcome::identify;
     use crate::diagnose::contact::testing::{FORCE_NOISE, TestContact};
 
@@ -57,7 +70,8 @@ mod tests {
     fn what_a_clipped_reading_misses_is_given_back() {
         let clipped = TestContact { limit: 2.0, ..TestContact::PLAIN };
         let trials = || [1, 2].map(|seed| clipped.trial(seed)).to_vec();
-        let contact = identify(trials(), &trials(), &TestContact::nominal(), false, &|_| {}).unwrap();
+        let contact =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
         assert_eq!(contact.chosen.model.names(0), ["force_saturation"]);
         let acted = as_it_acted(&contact, &[1, 2].map(|seed| clipped.recording(seed)));
         for (acted, seed) in acted.iter().zip([1, 2]) {

@@ -1,5 +1,6 @@
 //! The contact by a model of its force: position in, force out.
 
+pub mod circumstances;
 pub mod composed;
 pub mod criteria;
 pub mod fit;

@@ -106,6 +106,21 @@ impl Case {
         fs::write(self.path(name), text).unwrap();
     }
 
+    /// Adds `more` to each row of `column` in both trials.
+    pub fn shift(&self, column: &str, more: f64) {
+        for name in ["trial-1.csv", "trial-2.csv"] {
+            let text = fs::read_to_string(self.path(name)).unwrap();
+            let (header, rows) = text.split_once('\n').unwrap();
+            let at = header.split(',').position(|name| name == column).unwrap();
+            let shifted = rows.lines().map(|row| {
+                let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+                cells[at] = (cells[at].parse::<f64>().unwrap() + more).to_string();
+                cells.join(",")
+            });
+            self.write(name, &format!("{header}\n{}\n", shifted.collect::<Vec<_>>().join("\n")));
+        }
+    }
+
     /// `palpate diagnose` in the folder.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = palpate();

@@ -68,6 +68,25 @@ fn a_force_sensor_off_its_zero() {
     finds(&case, "force_bias", &[("bias", 0.3)]);
 }
 
+/// A weight beyond the sensor: the sensor shows it, and the drive carries it. Each channel alone would tell an error of its own, and the two
+/// would cancel.
+#[test]
+fn a_force_that_sensor_and_drive_feel_is_no_error_of_either() {
+    let rig = |trial: usize| {
+        let drive = "[drive]\nmass_kg = 0.45\nviscous_n_s_m = 2.0\n\
+                     [control]\nproportional_n_m = 775\nderivative_n_s_m = 10\nrate_hz = 1000\n[sensors]";
+        led(BENCH, 300.0, trial).replace("[sensors]", drive)
+    };
+    let case = Case::new(&rig(0), rig, "[[effect]]\nname = \"gravity_load\"\nload_n = 0.3\n");
+    case.shift("force_N", 0.3);
+    let answer = case.diagnose(&[]);
+    let physics = answer["physics"].as_array().unwrap();
+    assert!(physics.iter().all(|physics| physics["name"] == "unknown"), "{physics:?}");
+    let findings = answer["findings"].as_array().unwrap();
+    let felt = findings.iter().find(|finding| finding["code"] == "force_is_felt").unwrap();
+    assert!(felt["text"].as_str().unwrap().contains("force_bias"), "{felt}");
+}
+
 #[test]
 fn a_force_that_is_written_down_late() {
     let case = Case::led(BENCH, "[[effect]]\nname = \"channel_delay\"\ndelay_s = 0.02\n");

@@ -1,5 +1,6 @@
 //! What the recordings say of a contact: the law, its evidence, what else would do, and what is left.
 
+use super::circumstances::Circumstances;
 use super::criteria::{
     COMPARISONS, LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, LEAST_VUONG, MOST_LEFT,
     NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
@@ -89,7 +90,7 @@ pub fn identify(
     trials: Vec<ContactTrial>,
     coarse: &[ContactTrial],
     rig: &NominalContact,
-    is_one_speed: bool,
+    circumstances: Circumstances,
     say: &dyn Fn(&str),
 ) -> Option<Outcome> {
     let rows: usize = trials.iter().map(ContactTrial::len).sum();
@@ -102,7 +103,7 @@ pub fn identify(
     let data = Data::new(&trials).weighed(&first);
     let nominal = data.fit(&first.model, &first.values, Effort::FULL);
     let coarse = Data::new(coarse).weighed(&nominal);
-    let mut search = Search { data, coarse, nominal, is_one_speed };
+    let mut search = Search { data, coarse, nominal, circumstances };
     let chosen = search.run(say);
     say("the contact: what is left");
     let mut outcome = judged(&search, chosen, &start);
@@ -125,10 +126,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         named.clear();
     }
     let rest = Rest::of(data, &fit);
-    let columns = |fit: &Fit| -> Vec<Vec<f64>> {
-        (0..data.trials.len()).map(|trial| data.residual(&fit.model, &fit.values, trial)).collect()
-    };
-    let given_residual = columns(&given);
+    let given_residual = columns(data, &given);
     let verdict = verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
     // Beside names that stand for the mismatch, too: what a textbook's law leaves of a real thing is no less of use for being told.
     let learned = if is_notable(search, &fit, &rest) { learned(data, &fit) } else { None };
@@ -254,10 +252,19 @@ fn takes_too_little(search: &Search<'_>, fit: &Fit, named: &[NamedTerm]) -> bool
     !named.is_empty() && Rest::of(&search.data, fit).over_sensors > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
 }
 
-/// Whether what `fit` leaves, `rest`, is more than the sensors may leave, and a part of the force that is of interest.
+/// Whether what `fit` leaves, `rest`, is more than the sensors may leave, by the rows' weights and as it is told, in newtons, and a part
+/// of the force that is of interest.
 fn is_notable(search: &Search<'_>, fit: &Fit, rest: &Rest) -> bool {
-    let left = fit.energy - search.data.expected();
-    rest.over_sensors > NOTABLE_POWER && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE)
+    let data = &search.data;
+    let left = fit.energy - data.expected();
+    rest.over_sensors > NOTABLE_POWER
+        && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE)
+        && rms(data, &columns(data, fit)) > data.expected_noise()
+}
+
+/// What `fit` leaves, N or N m, a column a trial.
+fn columns(data: &Data<'_>, fit: &Fit) -> Vec<Vec<f64>> {
+    (0..data.trials.len()).map(|trial| data.residual(&fit.model, &fit.values, trial)).collect()
 }
 
 fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Verdict {
@@ -297,7 +304,8 @@ mod tests {
 
     fn found_at(contacts: [&TestContact; 2], is_one_speed: bool) -> Outcome {
         let trials = || contacts.iter().zip(1u64..).map(|(contact, seed)| contact.trial(seed)).collect::<Vec<_>>();
-        identify(trials(), &trials(), &TestContact::nominal(), is_one_speed, &|_| {}).unwrap()
+        let circumstances = Circumstances { is_one_speed, ..Circumstances::default() };
+        identify(trials(), &trials(), &TestContact::nominal(), circumstances, &|_| {}).unwrap()
     }
 
     fn names(outcome: &Outcome) -> Vec<&'static str> {
@@ -356,7 +364,8 @@ mod tests {
         let trials = [1, 2].map(|seed| TestContact { exponent: 1.8, fading: 1.5, ..TestContact::PLAIN }.trial(seed));
         let first = nominal_fit(&Data::new(&trials), &TestContact::nominal());
         let data = || Data::new(&trials).weighed(&first);
-        let search = Search { nominal: data().again(&first), data: data(), coarse: data(), is_one_speed: false };
+        let circumstances = Circumstances::default();
+        let search = Search { nominal: data().again(&first), data: data(), coarse: data(), circumstances };
         let relaxation = Term { effect: crate::effects::find("stress_relaxation").unwrap(), form: 0 };
         let model = first.model.with(relaxation);
         let start: Vec<f64> = first.values.iter().copied().chain([100.0, 0.4]).collect();

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::circumstances::Circumstances;
 use super::criteria::{
     FAR_FROM_NOISE, FAR_SHARES, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_TOLD_SHARE,
     LEAST_VUONG,
@@ -22,8 +23,8 @@ pub struct Search<'a> {
     pub coarse: Data<'a>,
     /// The nominal law, refitted.
     pub nominal: Fit,
-    /// Whether the tool moves at one speed each way and never stays at a depth.
-    pub is_one_speed: bool,
+    /// What bounds it beside the recordings.
+    pub circumstances: Circumstances,
 }
 
 /// What was chosen, and the sets that it was chosen from.
@@ -162,7 +163,7 @@ impl Search<'_> {
             names.dedup();
             names
         };
-        self.is_one_speed && kinds(one) == kinds(other)
+        self.circumstances.is_one_speed && kinds(one) == kinds(other)
     }
 
     /// What a value more has to gain, nats: half the logarithm of the rows that tell more than one (G. Schwarz, Ann. Stat. 6 (1978) 461).
@@ -193,7 +194,7 @@ impl Search<'_> {
             grown.retain(|fit| self.is_admissible(fit));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             // At one speed a memory is a loop: what it multiplies cannot be told.
-            let heads = if self.is_one_speed { 0 } else { BEAM.min(grown.len()) };
+            let heads = if self.circumstances.is_one_speed { 0 } else { BEAM.min(grown.len()) };
             let anew = self.composed(&grown[..heads], &mut composed);
             grown.extend(anew.into_iter().filter(|fit| self.is_admissible(fit)));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
@@ -262,6 +263,7 @@ impl Search<'_> {
     /// from other surfaces, because what is missing bends the nominal values, and what a motion can show depends on where the contact
     /// begins.
     pub(super) fn promises(&self, base: &Fit, asked: &(dyn Fn(&Term) -> bool + Sync)) -> Vec<(Promise, Fit)> {
+        let asked = |term: &Term| asked(term) && !self.circumstances.refuted.contains(&term.name());
         let mut bases = vec![base.clone()];
         if !base.model.bilateral && base.energy > FAR_ENERGY * self.coarse.expected() {
             let moved = SURFACES.par_iter().map(|part| {
@@ -277,7 +279,7 @@ impl Search<'_> {
             let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
             let model = &fit.model;
             let excitation = model.scales.excitation(self.coarse.trials, stiffness, surface, model.bilateral);
-            for mut promise in Projection::of(&self.coarse, &fit).promises(&excitation, asked) {
+            for mut promise in Projection::of(&self.coarse, &fit).promises(&excitation, &asked) {
                 promise.gain -= lost;
                 match best.iter_mut().find(|(other, _)| other.term.is(&promise.term)) {
                     Some((other, _)) if other.gain >= promise.gain => {}

@@ -98,6 +98,15 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
     }
 }
 
+/// ln of the likelihood of `trials` under the refitted nominal law, nats; `None` where they show no motion.
+#[must_use]
+pub fn nominal_likelihood(trials: &[DriveTrial], rig: &NominalDrive) -> Option<f64> {
+    let scales = scales(trials, rig)?;
+    let variance = encoder_variance(trials, &scales);
+    let data = Data { trials, least_encoder_variance: 0.3 * variance };
+    Some(nominal_fit(&data, rig, scales, variance)?.log_likelihood)
+}
+
 fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
     let scales = scales(&trials, rig)?;
     let encoder_variance = encoder_variance(&trials, &scales);

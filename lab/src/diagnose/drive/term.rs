@@ -245,7 +245,14 @@ impl Term {
     #[must_use]
     pub fn is_at_end(&self, values: &[f64], scales: &Scales) -> bool {
         let telling: &[usize] = match self {
-            Self::Coulomb | Self::EffortLag => &[0],
+            Self::Coulomb
+            | Self::EffortLag
+            | Self::LoadFriction
+            | Self::ForceGain
+            | Self::ForceDelay
+            | Self::ToolInertia => &[0],
+            // A weight of which a slide shows less than half a radian is any force that grows with the position.
+            Self::AngleLoad if !scales.is_rotary => &[2],
             Self::Stribeck => &[1, 2],
             Self::Sublinear => &[0, 1],
             Self::Cogging => &[2],

@@ -1,0 +1,162 @@
+//! The contact by its force and the drive by its effort: each is told what the other knows of the force sensor.
+
+use anyhow::Result;
+
+use super::acting_force::{CARRIED_BY_THE_DRIVE, as_it_acted, sensor_effects};
+use super::check::Finding;
+use super::contact;
+use super::contact::circumstances::Circumstances;
+use super::drive;
+use super::drive::named::NamedEffect;
+use super::drive::nominal::NominalDrive;
+use super::drive::trial::DriveTrial;
+use super::report::drive_report;
+use super::verdict::Verdict;
+use crate::effects::{self, Place};
+use crate::recording::Recording;
+use crate::rig::Rig;
+use crate::sensors::Figures;
+
+/// Recordings of a rig, to be identified.
+pub struct Recorded<'a> {
+    /// What its maker says of it.
+    pub rig: &'a Rig,
+    /// Where that is written.
+    pub origin: &'a str,
+    /// What was recorded.
+    pub trials: &'a [Recording],
+    /// What the sensors leave of each trial.
+    pub figures: &'a [Figures],
+    /// Whether the tool moves at one speed each way and never stays at a depth.
+    pub is_one_speed: bool,
+    /// Of the bootstrap's draws.
+    pub seed: u64,
+    /// Told how it goes.
+    pub say: &'a dyn Fn(&str),
+}
+
+/// What recordings say, channel by channel; `None` where they hold none of it, or too little.
+pub struct Channels {
+    /// By the force.
+    pub contact: Option<contact::outcome::Outcome>,
+    /// By the effort.
+    pub drive: Option<drive::outcome::Outcome>,
+    /// Effects of the force sensor that the contact would name and the drive speaks against.
+    pub refuted: Vec<&'static str>,
+}
+
+impl Channels {
+    /// That the drive speaks against effects of the force sensor.
+    #[must_use]
+    pub fn finding(&self) -> Option<Finding> {
+        let text = format!(
+            "Force and position alone would be told as {}. The drive feels the force as it is shown, though: it is no error of the sensor, \
+             but a force on the tool, as that of a weight or a magnet.",
+            self.refuted.join(" and ")
+        );
+        let finding = Finding { code: "force_is_felt", grave: false, place: "force".to_owned(), text };
+        (!self.refuted.is_empty()).then_some(finding)
+    }
+}
+
+impl Recorded<'_> {
+    /// What they say of contact and drive.
+    ///
+    /// # Errors
+    /// Effects in the rig file that cannot be.
+    pub fn identified(&self) -> Result<Channels> {
+        let mut refuted: Vec<&'static str> = Vec::new();
+        // Each time there is one effect less to try.
+        let mut channels = loop {
+            let channels = self.with_the_force_that_acted(refuted.clone())?;
+            let anew = self.refuted_by_the_drive(&channels)?;
+            if anew.is_empty() {
+                break channels;
+            }
+            refuted.extend(anew);
+        };
+        let found = channels.drive.as_ref().map(drive_report::found).unwrap_or_default();
+        let sensors: Vec<NamedEffect> =
+            found.into_iter().filter(|found| CARRIED_BY_THE_DRIVE.contains(&found.name())).collect();
+        if !sensors.is_empty() {
+            channels.contact = self.contact(&sensors, &refuted)?;
+        }
+        if let (Some(contact), Some(drive)) = (&channels.contact, &mut channels.drive) {
+            drive.leave_to_the_contact(|name| is_told(contact, name));
+        }
+        Ok(channels)
+    }
+
+    /// The contact without the effects `refuted`, and the drive with the force that acted by it.
+    fn with_the_force_that_acted(&self, refuted: Vec<&'static str>) -> Result<Channels> {
+        let contact = self.contact(&[], &refuted)?;
+        let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
+        let drive = self.drive(acted.as_deref().unwrap_or(self.trials))?;
+        Ok(Channels { contact, drive, refuted })
+    }
+
+    /// Effects of the force sensor that the contact names and the drive speaks against: with the force as it was shown nothing is missing
+    /// in the drive, and with what they make of it something is. That two errors cancel each other is not believed.
+    fn refuted_by_the_drive(&self, channels: &Channels) -> Result<Vec<&'static str>> {
+        let sensors = channels.contact.as_ref().map(sensor_effects).unwrap_or_default();
+        if sensors.is_empty() || is_complete(channels.drive.as_ref()) || channels.drive.is_none() {
+            return Ok(Vec::new());
+        }
+        let likelihood = |drive: Option<(Vec<DriveTrial>, NominalDrive)>| {
+            drive.and_then(|(trials, nominal)| drive::outcome::nominal_likelihood(&trials, &nominal))
+        };
+        let acted = channels.contact.as_ref().map(|contact| as_it_acted(contact, self.trials)).unwrap_or_default();
+        // A search takes long: it is asked where the nominal law fits better already.
+        if likelihood(self.prepared(self.trials)?) <= likelihood(self.prepared(&acted)?) {
+            return Ok(Vec::new());
+        }
+        let as_shown = self.drive(self.trials)?;
+        Ok(if is_complete(as_shown.as_ref()) { sensors } else { Vec::new() })
+    }
+
+    /// The contact, by force and position alone; `sensors` is what the drive found of the force sensor.
+    fn contact(&self, sensors: &[NamedEffect], refuted: &[&'static str]) -> Result<Option<contact::outcome::Outcome>> {
+        let rig = contact_rig(self.rig, sensors);
+        let known = effects::resolve_all(&rig, self.origin)?;
+        let is_recorded = contact::prepare::is_recorded(&rig, self.trials);
+        let Some(nominal) = contact::prepare::nominal(&rig, known).filter(|_| is_recorded) else { return Ok(None) };
+        let [fine, coarse] = contact::prepare::trials(self.trials, self.figures);
+        let circumstances = Circumstances { is_one_speed: self.is_one_speed, refuted: refuted.to_vec() };
+        Ok(contact::outcome::identify(fine, &coarse, &nominal, circumstances, self.say))
+    }
+
+    /// The drive in `trials`.
+    fn drive(&self, trials: &[Recording]) -> Result<Option<drive::outcome::Outcome>> {
+        let prepared = self.prepared(trials)?;
+        Ok(prepared.and_then(|(trials, nominal)| drive::outcome::identify(trials, &nominal, self.seed, self.say)))
+    }
+
+    /// `trials` as the drive's model sees them, and what the rig says of it; effects that it already holds are nominal.
+    fn prepared(&self, trials: &[Recording]) -> Result<Option<(Vec<DriveTrial>, NominalDrive)>> {
+        let known = effects::resolve_all(self.rig, self.origin)?;
+        let is_recorded = drive::prepare::is_recorded(self.rig, trials);
+        let nominal = drive::prepare::nominal(self.rig, trials, known).filter(|_| is_recorded);
+        Ok(nominal.map(|nominal| (drive::prepare::trials(self.rig, trials), nominal)))
+    }
+}
+
+/// Whether nothing is missing in the drive.
+fn is_complete(drive: Option<&drive::outcome::Outcome>) -> bool {
+    drive.is_some_and(|drive| matches!(drive.verdict, Verdict::NoMismatch | Verdict::Parameters))
+}
+
+/// The rig without its drive, which has a model of its own; `sensors` is what that found of the force sensor, and known to the contact.
+fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {
+    let mut contact = rig.clone();
+    contact.drive = None;
+    contact.effects.retain(|table| effects::find(&table.name).is_none_or(|e| e.spec().place != Place::Drive));
+    contact.effects.extend(sensors.iter().map(|effect| drive_report::table(effect, rig.coordinate)));
+    contact
+}
+
+/// Whether the contact names `name`, or what a slow sensor and a late one have in common.
+fn is_told(contact: &contact::outcome::Outcome, name: &str) -> bool {
+    let terms = &contact.chosen.model.terms;
+    let names = |name: &str| contact.named.iter().any(|named| terms[named.at].name() == name);
+    names(name) || (name == "channel_delay" && names("force_lag"))
+}
