@@ -14,6 +14,7 @@ pub mod evidence;
 pub mod experiment;
 pub mod interval;
 pub mod linalg;
+pub mod local_level;
 pub mod model_comparison;
 pub mod phase;
 pub mod report;

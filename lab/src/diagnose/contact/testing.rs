@@ -11,7 +11,7 @@ use crate::rig::Contact;
 use crate::sensors::{Channel, Figures};
 
 /// Rows a second.
-const RATE: f64 = 250.0;
+pub const RATE: f64 = 250.0;
 
 /// Noise of the force sensor, N.
 pub const FORCE_NOISE: f64 = 0.02;
