@@ -68,18 +68,33 @@ fn a_soft_sample_relaxes_and_stiffens() {
     assert!(found.contains(&"stress_relaxation") && stiffens && found.len() == 2, "{found:?}");
 }
 
-/// Pressed and held, never let go: neither a slow sensor nor its zero shows, and what else bends the curve halves nothing.
-#[test]
-fn a_soft_sample_that_is_never_let_go_relaxes_and_stiffens_and_nothing_else() {
-    let Some(diagnosis) = diagnosis_of("tissue_s230515", "tissue_indentation/s230515_P002_laser_2.csv") else { return };
-    let mut found = named(&diagnosis);
+/// Names in a recording, sorted, without `unknown`.
+fn names_in(diagnosis: &DiagnosisJson) -> Vec<&str> {
+    let mut found = named(diagnosis);
     found.retain(|name| *name != "unknown");
     found.sort_unstable();
-    assert_eq!(found, ["nonlinear_stiffness", "stress_relaxation"]);
-    assert!(
-        diagnosis.findings.iter().any(|finding| finding.code == "relaxation_or_force_lag"),
-        "that a slow sensor would show the same"
-    );
+    found
+}
+
+/// Pressed and held, never let go: neither a slow sensor nor its zero shows, and what else bends the curve halves nothing. Some hundred rows
+/// are few blocks for Vuong's statistic: a spring alone leaves six times as much and is not the simpler answer.
+#[test]
+fn soft_samples_that_are_never_let_go_relax_and_stiffen_and_nothing_else() {
+    for file in ["s230515_P002_laser_2.csv", "s230515_P011_laser_1.csv"] {
+        let file = format!("tissue_indentation/{file}");
+        let Some(diagnosis) = diagnosis_of("tissue_s230515", &file) else { return };
+        assert_eq!(names_in(&diagnosis), ["nonlinear_stiffness", "stress_relaxation"]);
+        // The other one begins above the surface that is found.
+        let is_told = diagnosis.findings.iter().any(|finding| finding.code == "relaxation_or_force_lag");
+        assert!(is_told || file.contains("P011"), "that a slow sensor would show the same");
+    }
+}
+
+/// A boundary near the deepest point bends the curve as a spring does that stiffens exponentially; the meat has no layers.
+#[test]
+fn meat_stiffens_and_has_no_layers() {
+    let Some(diagnosis) = diagnosis_of("tissue_meat", "tissue_indentation/meat_230327_RDG2_1A.csv") else { return };
+    assert_eq!(names_in(&diagnosis), ["nonlinear_stiffness", "stress_relaxation"]);
 }
 
 #[test]
