@@ -12,6 +12,7 @@ pub mod contact;
 pub mod drive;
 pub mod evidence;
 pub mod experiment;
+pub mod golden_section;
 pub mod interval;
 pub mod linalg;
 pub mod local_level;

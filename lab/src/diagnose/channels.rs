@@ -68,8 +68,11 @@ impl Recorded<'_> {
         let mut refuted: Vec<&'static str> = Vec::new();
         // Each time there is one effect less to try.
         let mut channels = loop {
-            let channels = self.with_the_force_that_acted(refuted.clone())?;
-            let anew = self.refuted_by_the_drive(&channels)?;
+            let contact = self.contact(&[], &refuted)?;
+            let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
+            let acted = acted.as_deref().unwrap_or(self.trials);
+            let channels = Channels { contact, drive: self.drive(acted)?, refuted: refuted.clone() };
+            let anew = self.refuted_by_the_drive(&channels, acted)?;
             if anew.is_empty() {
                 break channels;
             }
@@ -87,17 +90,9 @@ impl Recorded<'_> {
         Ok(channels)
     }
 
-    /// The contact without the effects `refuted`, and the drive with the force that acted by it.
-    fn with_the_force_that_acted(&self, refuted: Vec<&'static str>) -> Result<Channels> {
-        let contact = self.contact(&[], &refuted)?;
-        let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
-        let drive = self.drive(acted.as_deref().unwrap_or(self.trials))?;
-        Ok(Channels { contact, drive, refuted })
-    }
-
     /// Effects of the force sensor that the contact names and the drive speaks against: with the force as it was shown nothing is missing
-    /// in the drive, and with what they make of it something is. That two errors cancel each other is not believed.
-    fn refuted_by_the_drive(&self, channels: &Channels) -> Result<Vec<&'static str>> {
+    /// in the drive, and with what they make of it, `acted`, something is. That two errors cancel each other is not believed.
+    fn refuted_by_the_drive(&self, channels: &Channels, acted: &[Recording]) -> Result<Vec<&'static str>> {
         let sensors = channels.contact.as_ref().map(sensor_effects).unwrap_or_default();
         if sensors.is_empty() || is_complete(channels.drive.as_ref()) || channels.drive.is_none() {
             return Ok(Vec::new());
@@ -105,9 +100,8 @@ impl Recorded<'_> {
         let likelihood = |drive: Option<(Vec<DriveTrial>, NominalDrive)>| {
             drive.and_then(|(trials, nominal)| drive::outcome::nominal_likelihood(&trials, &nominal))
         };
-        let acted = channels.contact.as_ref().map(|contact| as_it_acted(contact, self.trials)).unwrap_or_default();
         // A search takes long: it is asked where the nominal law fits better already.
-        if likelihood(self.prepared(self.trials)?) <= likelihood(self.prepared(&acted)?) {
+        if likelihood(self.prepared(self.trials)?) <= likelihood(self.prepared(acted)?) {
             return Ok(Vec::new());
         }
         let as_shown = self.drive(self.trials)?;

@@ -22,3 +22,4 @@ pub mod testing;
 pub mod tones;
 pub mod trial;
 pub mod variance;
+pub mod worth;

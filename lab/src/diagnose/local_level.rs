@@ -4,6 +4,11 @@
 //! of a density that is fitted by maximum likelihood, and rows `level + e` of known variance at any instants. Kalman's filter and the
 //! smoother of H. E. Rauch, F. Tung and C. T. Striebel (1965).
 
+use super::golden_section::least_between;
+
+/// Precision of the logarithm of the density.
+const LN_PRECISION: f64 = 0.1;
+
 /// The smoothed level behind `values` at the instants `time`, s; row `i` has the variance `variance[i]`, infinite where it is no measurement.
 ///
 /// Zero everywhere where no row is one.
@@ -14,7 +19,8 @@ pub fn level(time: &[f64], values: &[f64], variance: &[f64]) -> Vec<f64> {
     let duration = time[time.len() - 1] - time[0];
     // From a level that stays within a thousandth of a row's deviation to one that is new in each row.
     let [low, high] = [1e-6 * usual / duration, usual * time.len() as f64 / duration].map(f64::ln);
-    rows.smoothed(most_likely([low, high], |ln_density| rows.log_likelihood(ln_density.exp())).exp())
+    let most_likely = least_between([low, high], LN_PRECISION, |ln_density| -rows.log_likelihood(ln_density.exp()));
+    rows.smoothed(most_likely.exp())
 }
 
 struct Rows<'a> {
@@ -80,24 +86,6 @@ impl Rows<'_> {
         }
         levels
     }
-}
-
-/// Precision of the logarithm of the density.
-const LN_PRECISION: f64 = 0.1;
-
-/// Where `log_likelihood` is greatest between two ends, by the golden section.
-fn most_likely([mut low, mut high]: [f64; 2], log_likelihood: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.381_966;
-    let inner = |low: f64, high: f64| [low + GOLDEN * (high - low), high - GOLDEN * (high - low)];
-    while high - low > LN_PRECISION {
-        let [left, right] = inner(low, high);
-        if log_likelihood(left) > log_likelihood(right) {
-            high = right;
-        } else {
-            low = left;
-        }
-    }
-    0.5 * (low + high)
 }
 
 #[cfg(test)]

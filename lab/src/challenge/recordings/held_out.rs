@@ -12,6 +12,7 @@ use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::nominal::{law_of, nominal_fit};
 use crate::diagnose::contact::prepare;
 use crate::diagnose::contact::trial::ContactTrial;
+use crate::diagnose::golden_section::least_between;
 use crate::diagnose::linalg::energy;
 use crate::diagnose::{drive, sensed};
 use crate::effects;
@@ -104,22 +105,14 @@ fn residual(rig: &Rig, origin: &str, trial: &Recording, own: OwnToTrial) -> Resu
     let places = (0..=SURFACE_GRID_POINTS).map(|at| from + at as f64 * step).chain([given[index::SURFACE]]);
     let cost = |surface: f64| energy(&placed(surface));
     let nearest = places.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).context("no place to start from")?;
-    Ok(placed(least_between(nearest - step, nearest + step, cost)))
+    Ok(placed(least_between([nearest - step, nearest + step], SURFACE_PRECISION * step, cost)))
 }
 
 /// Places of the surface that are compared over the way.
 const SURFACE_GRID_POINTS: usize = 60;
 
-/// The least of `cost` between two ends, by golden section.
-fn least_between(mut low: f64, mut high: f64, cost: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN_SECTION: f64 = 0.618_034;
-    const SEARCH_STEPS: usize = 40;
-    for _ in 0..SEARCH_STEPS {
-        let [left, right] = [high - GOLDEN_SECTION * (high - low), low + GOLDEN_SECTION * (high - low)];
-        if cost(left) < cost(right) { high = right } else { low = left }
-    }
-    0.5 * (low + high)
-}
+/// Precision of the place between two of them, of their distance.
+const SURFACE_PRECISION: f64 = 1e-6;
 
 /// Measured less `predicted` force on the rows that count, with the zero of the force, and where it is the trial's own the scale, at
 /// their best.

@@ -4,6 +4,8 @@
 //! and the fixed-interval smoother (A. E. Bryson, M. Frazier, 1963) are exact for rows at any instants. The density of w is the most likely one, so
 //! that no bandwidth has to be chosen.
 
+use crate::diagnose::golden_section::least_between;
+
 /// A smoothed motion, one entry a row.
 #[derive(Debug, Clone, Default)]
 pub struct Motion {
@@ -99,23 +101,7 @@ impl<'a> Rows<'a> {
     }
 
     fn most_likely_density(&self) -> f64 {
-        const GOLDEN: f64 = 0.381_966;
-        let cost = |ln: f64| -self.log_likelihood(ln.exp());
-        let [mut low, mut high] = LN_DENSITY;
-        let (mut left, mut right) = (low + GOLDEN * (high - low), high - GOLDEN * (high - low));
-        let (mut at_left, mut at_right) = (cost(left), cost(right));
-        while high - low > LN_PRECISION {
-            if at_left < at_right {
-                (high, right, at_right) = (right, left, at_left);
-                left = low + GOLDEN * (high - low);
-                at_left = cost(left);
-            } else {
-                (low, left, at_left) = (left, right, at_right);
-                right = high - GOLDEN * (high - low);
-                at_right = cost(right);
-            }
-        }
-        (0.5 * (low + high)).exp()
+        least_between(LN_DENSITY, LN_PRECISION, |ln| -self.log_likelihood(ln.exp())).exp()
     }
 
     fn log_likelihood(&self, density: f64) -> f64 {

@@ -3,16 +3,13 @@
 use rayon::prelude::*;
 
 use super::circumstances::Circumstances;
-use super::criteria::{
-    FAR_FROM_NOISE, FAR_SHARES, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_TOLD_SHARE,
-    LEAST_VUONG,
-};
+use super::criteria::LEAST_GAIN;
 use super::fit::{Data, Effort, Fit, Rest};
 use super::model::{ContactModel, index};
 use super::own_values::{fewer_own_values, moved_values, own_values};
 use super::projection::{Projection, Promise};
 use super::tones::is_in_step;
-use crate::diagnose::model_comparison::vuong;
+use super::worth::{are_told_apart, free};
 use crate::diagnose::term::Term;
 
 /// What a search works on.
@@ -33,27 +30,6 @@ pub struct Chosen {
     pub fit: Fit,
     /// Every set that was fitted in full.
     pub sets: Vec<Fit>,
-}
-
-/// What a larger model has over a smaller one.
-#[derive(Debug, Clone, Copy)]
-pub struct Worth {
-    /// Log likelihood, nats, rows that belong together counted once.
-    pub gain: f64,
-    /// Share of what the smaller leaves above the sensors' noise.
-    pub share: f64,
-    /// What it takes, in root mean square, over all that the nominal law leaves above the noise.
-    pub part_of_all: f64,
-    /// The same over the force's deviation.
-    pub part_of_force: f64,
-    /// Vuong's statistic over blocks.
-    pub vuong: f64,
-    /// Power that the larger leaves over the sensors' own.
-    pub left: f64,
-    /// The same of the smaller.
-    pub left_before: f64,
-    /// What a value more has to gain, nats.
-    pub price: f64,
 }
 
 /// Sets that each round grows from.
@@ -83,62 +59,7 @@ const SURFACES: [f64; 3] = [-0.3, 0.15, 0.4];
 /// Squares a row, over the sensors' own, from which much is missing.
 const FAR_ENERGY: f64 = 4.0;
 
-/// Blocks that likelihoods are compared over, and integrated autocorrelation times that a block is long at the least.
-const BLOCKS: usize = 40;
-const BLOCK_TIMES: f64 = 3.0;
-
 impl Search<'_> {
-    /// What `more` has over `less`.
-    #[must_use]
-    pub fn worth(&self, more: &Fit, less: &Fit) -> Worth {
-        let (rest, before) = (Rest::of(&self.data, more), Rest::of(&self.data, less));
-        let taken = less.energy - more.energy;
-        let above = |energy: f64| (energy - self.data.expected()).max(0.0);
-        let scale = 0.5 / (rest.power * rest.correlated_rows);
-        let logs = |rows: &[f64]| -> Vec<f64> { rows.iter().map(|row| -scale * row * row).collect() };
-        let block = (self.data.rows() / BLOCKS).max((BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
-        Worth {
-            gain: scale * taken,
-            share: taken.max(0.0) / above(less.energy).max(taken.max(f64::MIN_POSITIVE)),
-            part_of_all: (taken.max(0.0) / above(self.nominal.energy).max(taken.max(f64::MIN_POSITIVE))).sqrt(),
-            part_of_force: self.part_of_force(taken),
-            vuong: vuong(&logs(&rest.rows), &logs(&before.rows), block),
-            left: rest.over_sensors,
-            left_before: before.over_sensors,
-            price: self.price_of_value(&rest),
-        }
-    }
-
-    /// What squares of a weighted residual are, in root mean square, of the force's deviation.
-    #[must_use]
-    pub fn part_of_force(&self, energy: f64) -> f64 {
-        (energy.max(0.0) / self.force_energy()).sqrt()
-    }
-
-    /// Squares of the force about its mean, each over its deviation.
-    fn force_energy(&self) -> f64 {
-        let rows = || {
-            self.data.trials.iter().zip(&self.data.weights).flat_map(|(trial, weights)| trial.force.iter().zip(weights))
-        };
-        let weight: f64 = rows().map(|(_, weight)| weight * weight).sum();
-        let mean = rows().map(|(force, weight)| force * weight * weight).sum::<f64>() / weight.max(f64::MIN_POSITIVE);
-        rows().map(|(force, weight)| ((force - mean) * weight).powi(2)).sum::<f64>().max(f64::MIN_POSITIVE)
-    }
-
-    /// Whether `more` is worth its values.
-    #[must_use]
-    pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
-        let values = free(more).saturating_sub(free(less)).max(1);
-        let worth = self.worth(more, less);
-        // Far from the sensors' noise any bend of a law takes a little of what another one leaves.
-        let [share, part] = if worth.left > FAR_FROM_NOISE { FAR_SHARES } else { [LEAST_SHARE, LEAST_PART_OF_ALL] };
-        worth.gain > LEAST_GAIN + worth.price * values as f64
-            && worth.share > share
-            && worth.part_of_all > part
-            && worth.part_of_force > LEAST_PART_OF_FORCE
-            && is_told(&worth)
-    }
-
     /// Whether `fit` is a law that its effects stand for: no value at the end of what the recordings show, none by which an effect is not
     /// what it is called, no wave that has slid into step with the motion, and no spring whose force falls on the way in, unless the rig
     /// file has one.
@@ -164,16 +85,6 @@ impl Search<'_> {
             names
         };
         self.circumstances.is_one_speed && kinds(one) == kinds(other)
-    }
-
-    /// What a value more has to gain, nats: half the logarithm of the rows that tell more than one (G. Schwarz, Ann. Stat. 6 (1978) 461).
-    fn price_of_value(&self, rest: &Rest) -> f64 {
-        0.5 * (self.data.rows() as f64 / rest.correlated_rows).max(1.0).ln()
-    }
-
-    /// Squares that are left, in nats under `rest`, with what each value has to earn.
-    fn price(&self, fit: &Fit, rest: &Rest) -> f64 {
-        0.5 / (rest.power * rest.correlated_rows) * fit.energy + self.price_of_value(rest) * free(fit) as f64
     }
 
     /// Runs the search, telling `say` how it goes.
@@ -393,7 +304,7 @@ impl Search<'_> {
             let worth = self.worth(&best, other);
             more > 0
                 && !other.model.terms.is_empty()
-                && (worth.gain < LEAST_GAIN + worth.price * more as f64 || !is_told(&worth))
+                && (worth.gain < LEAST_GAIN + worth.price * more as f64 || !are_told_apart(&worth))
                 && self.is_worth(other, &self.nominal)
         };
         let simpler =
@@ -410,17 +321,6 @@ impl Search<'_> {
         }
         self.data.fit(&model, &values, Effort::FULL)
     }
-}
-
-/// Whether the recordings tell two laws apart: block by block, or, where few blocks speak, because the one leaves next to nothing of what the
-/// other leaves far above the noise.
-fn is_told(worth: &Worth) -> bool {
-    worth.vuong > LEAST_VUONG || (worth.share > LEAST_TOLD_SHARE && worth.left_before > FAR_FROM_NOISE)
-}
-
-/// Values that are fitted.
-fn free(fit: &Fit) -> usize {
-    fit.model.free_count()
 }
 
 /// Model and values of `fit` without term `at`. What built on it alone becomes its simpler form.
