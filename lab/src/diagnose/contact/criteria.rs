@@ -10,8 +10,9 @@ pub const COMPARISONS: f64 = 150.0;
 /// Share of what the smaller model leaves above the sensors' noise.
 pub const LEAST_SHARE: f64 = 0.2;
 
-/// Part, in root mean square, of all that the nominal law leaves above the noise.
-pub const LEAST_PART_OF_ALL: f64 = 0.1;
+/// Part, in root mean square, of all that the nominal law leaves above the noise. Chosen: a circuit's cubic spring takes 0.06 beside its
+/// mass; at 0.1 and at 0.05 the answers to our own published cases and to two seeds of another author's are the same.
+pub const LEAST_PART_OF_ALL: f64 = 0.05;
 
 /// Power over the sensors' own from which a law is one of a real thing that no textbook law reaches; what an effect has to
 /// take there is larger: a third of what is left without it, and a quarter of all in root mean square.

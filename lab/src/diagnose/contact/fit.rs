@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::model::{ContactModel, Range};
 use super::trial::ContactTrial;
-use super::variance::{law_variance, noise_along};
+use super::variance::{law_variance, noise_along, noise_scale};
 use crate::diagnose::linalg::{dot, energy};
 
 /// The trials that a model is fitted to, and what each row is worth.
@@ -19,6 +19,8 @@ pub struct Data<'a> {
     pub noise: Vec<Vec<f64>>,
     /// One over the deviation that is expected of each row; zero where a row does not count.
     pub weights: Vec<Vec<f64>>,
+    /// Whether the sensors' noise is as their figures say; else it is what the law leaves that the rows were weighed by.
+    pub noise_is_as_stated: bool,
 }
 
 /// A fitted model.
@@ -67,7 +69,7 @@ impl<'a> Data<'a> {
             let rows = trial.counts.iter().zip(noise);
             rows.map(|(counts, variance)| if *counts { variance.sqrt().recip() } else { 0.0 }).collect()
         });
-        Self { trials, weights: weights.collect(), noise }
+        Self { trials, weights: weights.collect(), noise, noise_is_as_stated: true }
     }
 
     /// Rows that count.
@@ -208,7 +210,7 @@ impl<'a> Data<'a> {
 
     /// The same with each row worth what is expected of it under `fit`: to the force's variance come those of position, velocity and
     /// acceleration, each by how much the force changes with it (effective variance: J. Orear, *Am. J. Phys.* 50, 1982), and one variance
-    /// for what the law itself leaves.
+    /// for what the law itself leaves. Where `fit` leaves less than the sensors are said to, they leave no more than that.
     #[must_use]
     pub fn weighed(&self, fit: &Fit) -> Self {
         let noise: Vec<Vec<f64>> = self
@@ -221,10 +223,12 @@ impl<'a> Data<'a> {
             (0..self.trials.len()).map(|trial| self.residual(&fit.model, &fit.values, trial)).collect();
         let rows = noise.iter().flatten().zip(residual.iter().flatten()).filter(|(variance, _)| variance.is_finite());
         let rows: Vec<(f64, f64)> = rows.map(|(variance, residual)| (*variance, residual * residual)).collect();
-        let misfit = law_variance(&rows);
+        let (misfit, scale) = (law_variance(&rows), noise_scale(&rows));
+        let noise: Vec<Vec<f64>> =
+            noise.iter().map(|trial| trial.iter().map(|variance| scale * variance).collect()).collect();
         let weight = |variance: &f64| if variance.is_finite() { (variance + misfit).sqrt().recip() } else { 0.0 };
         let weights = noise.iter().map(|trial| trial.iter().map(weight).collect());
-        Self { trials: self.trials, weights: weights.collect(), noise }
+        Self { trials: self.trials, weights: weights.collect(), noise, noise_is_as_stated: scale == 1.0 }
     }
 
     /// `fit` under these weights, its search continued from where it ended.

@@ -50,7 +50,7 @@ impl Folds {
         let weights = data.weights.iter().zip(&self.halves[half]).map(|(weights, own)| {
             weights.iter().zip(own).map(|(weight, own)| if *own { *weight } else { 0.0 }).collect()
         });
-        Data { trials: data.trials, noise: data.noise.clone(), weights: weights.collect() }
+        Data { noise: data.noise.clone(), weights: weights.collect(), ..*data }
     }
 
     /// Fits `fit` on each half and takes what is left on the other. What belongs to an unseen trial alone, where the law says so, is

@@ -323,7 +323,12 @@ mod tests {
             assert!(low - slack < truth && truth < high + slack, "{at}: {value} {low} {high}");
         }
         // 6000 rows tell their power to 1.8 %; the encoder adds 0.6 mN.
-        let data = Data { trials: &outcome.trials, noise: outcome.noise.clone(), weights: outcome.weights.clone() };
+        let data = Data {
+            trials: &outcome.trials,
+            noise: outcome.noise.clone(),
+            weights: outcome.weights.clone(),
+            noise_is_as_stated: true,
+        };
         let left = rms(&data, &outcome.residuals[2]);
         assert!((left / FORCE_NOISE - 1.0).abs() < 0.05 && (outcome.expected_noise / FORCE_NOISE - 1.0).abs() < 0.05);
     }

@@ -123,7 +123,8 @@ impl Search<'_> {
                 // Two effects can be worth it where neither is alone.
                 None => waiting += 1,
             }
-            if waiting > 1 || best.energy < 1.02 * self.data.expected() {
+            let is_at_noise = self.data.noise_is_as_stated && best.energy < 1.02 * self.data.expected();
+            if waiting > 1 || is_at_noise {
                 break;
             }
             let grown = grown.iter().filter(|fit| fit.model.terms.len() <= MOST_TERMS).take(BEAM);

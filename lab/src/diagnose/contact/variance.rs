@@ -1,5 +1,6 @@
 //! Variance of each row of the force: by the sensors, by errors of the motion, and by what a law leaves.
 
+use super::criteria::NOTABLE_POWER;
 use super::model::{ContactModel, index};
 use super::trial::ContactTrial;
 use crate::diagnose::linalg::energy;
@@ -20,6 +21,16 @@ pub fn law_variance(rows: &[(f64, f64)]) -> f64 {
         if excess(middle) > 0.0 { low = middle } else { high = middle }
     }
     0.5 * (low + high)
+}
+
+/// Factor between what a law leaves of `rows` and the variances that are stated of them where it leaves notably less, else one: the
+/// variance of unit weight a posteriori (E. M. Mikhail, *Observations and Least Squares*, 1976). A sensor's noise that is estimated from
+/// its own rows holds whatever of the motion is too quick for a polynomial of a few rows.
+#[must_use]
+pub fn noise_scale(rows: &[(f64, f64)]) -> f64 {
+    let squares: f64 = rows.iter().map(|(variance, square)| square / variance).sum();
+    let scale = squares / rows.len().max(1) as f64;
+    if scale < NOTABLE_POWER.recip() { scale.max(f64::MIN_POSITIVE) } else { 1.0 }
 }
 
 /// Variance of each row of `trial` by the sensors, under `model` with `values`; infinite where the row is no measurement of the law.
@@ -81,4 +92,20 @@ fn jump_variance(model: &ContactModel, values: &[f64], trial: &ContactTrial, num
         variance[before + 1..before + 3].iter_mut().for_each(|row| *row += square);
     }
     variance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_that_is_stated_four_times_too_large_is_taken_down_and_what_a_law_leaves_is_not_taken_for_noise() {
+        let rows =
+            |stated: f64| -> Vec<(f64, f64)> { (0..100).map(|row| (stated, f64::from(row % 2) * 2.0)).collect() };
+        // A mean square of one.
+        assert_eq!(noise_scale(&rows(4.0)), 0.25);
+        assert_eq!((noise_scale(&rows(1.0)), noise_scale(&rows(0.3))), (1.0, 1.0));
+        // A sixth is within what the noise of a sensor is known to.
+        assert_eq!(noise_scale(&rows(1.2)), 1.0);
+    }
 }

@@ -89,7 +89,12 @@ fn residuals(outcome: &Outcome) -> Residuals {
 /// The rows of `outcome` with their worth.
 #[must_use]
 pub fn data(outcome: &Outcome) -> Data<'_> {
-    Data { trials: &outcome.trials, noise: outcome.noise.clone(), weights: outcome.weights.clone() }
+    Data {
+        trials: &outcome.trials,
+        noise: outcome.noise.clone(),
+        weights: outcome.weights.clone(),
+        noise_is_as_stated: true,
+    }
 }
 
 /// The rig `given` with what was found of the contact: refitted values and every effect of the law.
