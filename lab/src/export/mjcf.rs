@@ -182,6 +182,7 @@ impl Writer<'_> {
     fn play(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
         let half = 0.5 * effect.value("gap");
         let rotary = self.export.rig.coordinate == crate::rig::Coordinate::Rotary;
+        self.note_friction_beyond(effect);
         let half = if rotary { half / self.model.angle_unit() } else { half };
         // The least that MuJoCo takes: as hard as the step allows.
         let hard = 2.0 * self.model.timestep();
@@ -193,19 +194,24 @@ impl Writer<'_> {
     }
 
     fn link(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
-        let (inertia, viscous) = self.export.rig.drive.map_or((1.0, 0.0), |drive| (drive.inertia, drive.viscous));
+        let inertia = self.export.rig.drive.map_or(1.0, |drive| drive.inertia);
         let stiffness = effect.value("link_stiffness");
         let damping = 2.0 * effect.value("damping_ratio") * (stiffness * effect.value("motor_share") * inertia).sqrt();
+        self.note_friction_beyond(effect);
+        self.second_joint(effect, "link", &format!("stiffness=\"{stiffness}\" damping=\"{damping}\""))
+    }
+
+    /// Says how much of the damping lies beyond the transmission `effect`: the user's joint has one, which becomes the motor's.
+    fn note_friction_beyond(&mut self, effect: &FoundEffect) {
+        let viscous = self.export.rig.drive.map_or(0.0, |drive| drive.viscous);
         let share = if effect.form == "friction_on_both_sides" { effect.value("friction_share") } else { 0.0 };
         if share < 1.0 {
-            let words = format!(
-                "{}: {} of the damping acts beyond the link; all of it is at the motor here",
-                effect.name,
-                short((1.0 - share) * viscous)
-            );
-            self.notes.push(words);
+            let beyond = short((1.0 - share) * viscous);
+            self.notes.push(format!(
+                "{}: {beyond} of the damping acts beyond the link; all of it is at the motor here",
+                effect.name
+            ));
         }
-        self.second_joint(effect, "link", &format!("stiffness=\"{stiffness}\" damping=\"{damping}\""))
     }
 
     /// A joint in series with the user's, which becomes the motor's; what the motor moves by itself is its armature.

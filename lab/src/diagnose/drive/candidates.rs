@@ -163,7 +163,9 @@ pub fn simpler(fit: &Fit, at: usize) -> Vec<(Model, Vec<f64>)> {
     let mut all = match &fit.model.terms[at] {
         Term::Stribeck => vec![replaced(Term::Coulomb, &[values[0] + 0.3 * values[1]])],
         Term::AngleLoad => vec![replaced(Term::ConstantLoad, &[0.0])],
-        Term::Play(side) => vec![replaced(Term::Compliance(*side), &[0.1 * values[0], values[1], values[2]])],
+        Term::Play(side) => {
+            vec![replaced(Term::Compliance(*side), &[0.1 * values[0], values[1], values[2], values[4]])]
+        }
         _ => Vec::new(),
     };
     let mut model = fit.model.clone();

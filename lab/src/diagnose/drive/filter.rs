@@ -58,7 +58,14 @@ mod tests {
         let trial = TestDrive::PLAIN.trial(2.0, 7);
         let noise = Noise { ln_disturbance: (1e-6f64).ln(), ln_encoder: (25e-12f64).ln() };
         let one = DriveLaw::nominal(0.8, 4.0, 0.0);
-        let link = Link { stiffness: 4e5, damping: 200.0, play: 0.0, load_share: 0.4, encoder: Side::Motor };
+        let link = Link {
+            stiffness: 4e5,
+            damping: 200.0,
+            play: 0.0,
+            load_share: 0.4,
+            load_viscous: 0.0,
+            encoder: Side::Motor,
+        };
         let both = DriveLaw { link: Some(link), ..one.clone() };
         let [rigid, linked] = [one, both].map(|law| innovations(&trial, &law, &noise, true));
         let power = |x: &[f64]| x[100..].iter().map(|x| x * x).sum::<f64>();

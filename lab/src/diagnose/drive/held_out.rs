@@ -1,6 +1,6 @@
 //! What a model leaves of rows that its values were not fitted to.
 
-use super::fit::{Data, Fit, search_values};
+use super::fit::{Data, Fit, search_noise, search_values};
 use super::missing_force::missing_force;
 use super::noise::Noise;
 use super::trial::DriveTrial;
@@ -18,6 +18,9 @@ pub struct HeldOut {
     pub missing: Vec<Vec<f64>>,
     /// Fitted to the first half, and to the second.
     pub values: [Vec<f64>; 2],
+    /// Density of the force disturbance that each half's values leave of the other half, the most likely one there, in the mean over all
+    /// rows, N^2 s or (N m)^2 s.
+    pub density: f64,
 }
 
 /// Steps of the search on a half, from the values of the whole.
@@ -47,10 +50,17 @@ impl Folds {
     #[must_use]
     pub fn held_out(&self, data: &Data<'_>, fit: &Fit, common: &Noise) -> HeldOut {
         let mut missing: Vec<Vec<f64>> = data.trials.iter().map(|trial| vec![0.0; trial.len()]).collect();
+        let (mut density, mut rows) = (0.0, 0);
         let values = [0, 1].map(|half| {
             let own = Data { trials: &self.halves[half], ..*data };
+            let unseen = Data { trials: &self.halves[1 - half], ..*data };
             let mut values = fit.values.clone();
             search_values(&own, &fit.model, &mut values, &fit.noise, STEPS);
+            let mut noise = fit.noise;
+            search_noise(&unseen, &fit.model, &values, &mut noise);
+            let own_rows = unseen.trials.iter().map(DriveTrial::len).sum::<usize>();
+            density += noise.disturbance() * own_rows as f64;
+            rows += own_rows;
             let law = fit.model.law(&values);
             for (piece, (trial, start)) in self.halves[1 - half].iter().zip(&self.places[1 - half]) {
                 let force = missing_force(piece, &law, &fit.noise, common);
@@ -58,7 +68,7 @@ impl Folds {
             }
             values
         });
-        HeldOut { missing, values }
+        HeldOut { missing, values, density: density / rows.max(1) as f64 }
     }
 }
 
@@ -115,5 +125,13 @@ mod tests {
             assert!((0.27..0.33).contains(&left), "{left}");
         }
         assert!((held.values[0][3] - 0.3).abs() < 0.01 && held.values[1][3].abs() < 0.01);
+        // Its density is that of a step of 0.3 N that a filter takes up within a few of its time constants; where both halves say the
+        // same, of the encoder's noise alone.
+        let alike = [
+            TestDrive { load: 0.3, ..TestDrive::PLAIN }.trial(3.0, 1),
+            TestDrive { load: 0.3, ..TestDrive::PLAIN }.trial(3.0, 2),
+        ];
+        let same = Folds::of(&alike).held_out(&Data { trials: &alike, ..data }, &whole, &common);
+        assert!(same.density < 0.1 * held.density, "{} {}", same.density, held.density);
     }
 }

@@ -15,6 +15,8 @@ pub struct Link {
     pub play: f64,
     /// Share of the whole inertia on the load's side, 0 to 1.
     pub load_share: f64,
+    /// Viscous friction on the load's side, beside that of the law, which acts on the motor, N s/m or N m s/rad.
+    pub load_viscous: f64,
     /// Which side the encoder measures.
     pub encoder: Side,
 }
@@ -277,7 +279,14 @@ mod tests {
 
     #[test]
     fn nothing_passes_a_play_and_beyond_it_a_spring_from_its_end() {
-        let link = Link { stiffness: 100.0, damping: 2.0, play: 0.02, load_share: 0.5, encoder: Side::Motor };
+        let link = Link {
+            stiffness: 100.0,
+            damping: 2.0,
+            play: 0.02,
+            load_share: 0.5,
+            load_viscous: 0.0,
+            encoder: Side::Motor,
+        };
         assert_eq!(link.transmitted(0.009, 5.0), 0.0);
         assert!((link.transmitted(0.03, 1.0) - (100.0 * 0.02 + 2.0)).abs() < 1e-12);
         assert!((link.transmitted(-0.03, 0.0) + 100.0 * 0.02).abs() < 1e-12);

@@ -18,7 +18,8 @@ pub fn missing_force(trial: &DriveTrial, law: &DriveLaw, own: &Noise, common: &N
     let pass = innovations(trial, law, own, true);
     let mut left = DriveTrial { position: pass.residual, force: None, ..trial.clone() };
     left.effort.fill(0.0);
-    let rigid = DriveLaw::nominal(law.inertia, law.viscous, 0.0);
+    let viscous = law.viscous + law.link.map_or(0.0, |link| link.load_viscous);
+    let rigid = DriveLaw::nominal(law.inertia, viscous, 0.0);
     let beside = innovations(&left, &rigid, common, true).disturbance;
     pass.disturbance.iter().zip(beside).map(|(own, beside)| own + beside).collect()
 }
@@ -36,7 +37,14 @@ mod tests {
         let own = Noise { ln_disturbance: (1e-12f64).ln(), ln_encoder: drive.encoder.powi(2).ln() };
         let common = own.with_crossing(20.0, 1e-3, 0.8);
         let rigid = DriveLaw::nominal(0.8, 4.0, 0.0);
-        let link = Link { stiffness: 4e5, damping: 200.0, play: 0.0, load_share: 0.4, encoder: Side::Motor };
+        let link = Link {
+            stiffness: 4e5,
+            damping: 200.0,
+            play: 0.0,
+            load_share: 0.4,
+            load_viscous: 0.0,
+            encoder: Side::Motor,
+        };
         let linked = DriveLaw { link: Some(link), ..rigid.clone() };
         for law in [rigid, linked] {
             let missing = missing_force(&trial, &law, &own, &common);

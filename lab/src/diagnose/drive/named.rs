@@ -37,8 +37,7 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     let same = |from: &[usize]| -> Vec<(f64, [f64; 2])> { from.iter().map(|at| (values[*at], ends[*at])).collect() };
     let fixed = |value: f64| (value, [value, value]);
     let pitch = |at: usize| (TAU / values[at], [TAU / ends[at][1], TAU / ends[at][0]]);
-    let motor_share =
-        (1.0 - values.get(2).copied().unwrap_or(0.0), ends.get(2).map_or([0.0; 2], |e| [1.0 - e[1], 1.0 - e[0]]));
+    let of_motor = |of_load: usize| (1.0 - values[of_load], [1.0 - ends[of_load][1], 1.0 - ends[of_load][0]]);
     let (form, all) = match term {
         Term::Coulomb | Term::ConstantLoad | Term::EffortLimit | Term::EffortLag => (0, same(&[0])),
         Term::LoadFriction | Term::ForceGain | Term::ForceDelay | Term::ToolInertia => (0, same(&[0])),
@@ -48,12 +47,12 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
         Term::AngleLoad => (2, [same(&[0, 1]), vec![pitch(2)]].concat()),
         Term::Cogging => (0, [same(&[0, 1]), vec![pitch(2)]].concat()),
         Term::Compliance(_) => {
-            let motor = motor_share.0 * fit.values[index::INERTIA];
+            let motor = (1.0 - values[2]) * fit.values[index::INERTIA];
             let ratio = |damping: f64| damping / (2.0 * (values[0] * motor).sqrt());
             let damping_ratio = (ratio(values[1]), ends[1].map(ratio));
-            (1, vec![(values[0], ends[0]), motor_share, damping_ratio, fixed(1.0)])
+            (1, vec![(values[0], ends[0]), of_motor(2), damping_ratio, of_motor(3)])
         }
-        Term::Play(_) => (0, vec![(values[3], ends[3]), motor_share, fixed(values[0])]),
+        Term::Play(_) => (1, vec![(values[3], ends[3]), of_motor(2), fixed(values[0]), of_motor(4)]),
         Term::Curve { .. } => return None,
     };
     let (values, intervals) = all.into_iter().unzip();
@@ -67,6 +66,8 @@ pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Ter
     let damping = |stiffness: f64, motor_share: f64, ratio: f64| {
         2.0 * ratio * (stiffness * motor_share * scales.inertia).max(0.0).sqrt()
     };
+    // Of the load; all of it where the form has none on the motor.
+    let friction_share = if resolved.form == 0 { 1.0 } else { 1.0 - v.last().copied().unwrap_or(0.0) };
     let found = match (resolved.effect.spec().name, resolved.form) {
         ("coulomb_friction", 0) => (Term::Coulomb, vec![v[0]]),
         ("coulomb_friction", _) => (Term::Coulomb, vec![0.5 * (v[0] + v[1])]),
@@ -82,9 +83,11 @@ pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Ter
         ("force_gain", _) => (Term::ForceGain, vec![v[0]]),
         ("tool_inertia", _) => (Term::ToolInertia, vec![v[0]]),
         ("transmission_compliance", _) => {
-            (Term::Compliance(encoder), vec![v[0], damping(v[0], v[1], v[2]), 1.0 - v[1]])
+            (Term::Compliance(encoder), vec![v[0], damping(v[0], v[1], v[2]), 1.0 - v[1], friction_share])
         }
-        ("backlash", _) => (Term::Play(encoder), vec![v[2], damping(v[2], v[1], 0.05), 1.0 - v[1], v[0]]),
+        ("backlash", _) => {
+            (Term::Play(encoder), vec![v[2], damping(v[2], v[1], 0.05), 1.0 - v[1], v[0], friction_share])
+        }
         _ => return None,
     };
     Some(found)

@@ -34,7 +34,10 @@ pub fn trials(rig: &Rig, recordings: &[Recording]) -> Vec<DriveTrial> {
             None => effort,
         };
         let force = recording.force.clone().filter(|_| touches);
-        DriveTrial::new(recording.name.clone(), recording.time.clone(), &recording.position, effort, force, every)
+        let noise = Figures::of(rig, recording).force.filter(|_| touches).map_or(0.0, |channel| channel.noise);
+        let trial =
+            DriveTrial::new(recording.name.clone(), recording.time.clone(), &recording.position, effort, force, every);
+        DriveTrial { force_density: noise * noise * trial.recorded_period_s(), ..trial }
     };
     recordings.iter().map(trial).collect()
 }

@@ -141,7 +141,7 @@ impl Search<'_> {
                 say("the drive: two bodies");
                 link_searches += 1;
                 let found = links::found(&self.data, rigid, &self.disturbance(rigid), &self.sides);
-                grown.extend(found.iter().map(|fit| self.polished(fit)));
+                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit))));
             }
             grown.retain(|fit| !is_at_end(fit));
             let grown = distinct(grown);
@@ -199,6 +199,28 @@ impl Search<'_> {
     pub fn polished(&self, start: &Fit) -> Fit {
         let effort = if start.model.has_link() { Effort::LINKED } else { Effort::FULL };
         fit(&self.data, &start.model, &start.values, start.noise, effort)
+    }
+
+    /// The same of a link that was looked for on a stretch; a play is looked for around where that ends, too.
+    fn polished_link(&self, start: &Fit) -> Fit {
+        let fit = self.polished(start);
+        if !fit.model.has("backlash") {
+            return fit;
+        }
+        let around = self.polished(&links::likelier_around(&self.data, &fit));
+        if around.log_likelihood > fit.log_likelihood { around } else { fit }
+    }
+
+    /// `fit`, where a link shows that another term was one too many, with the simpler law in its place: a weak link makes Stribeck friction
+    /// of Coulomb friction.
+    fn within_ends(&self, fit: Fit) -> Fit {
+        let is_at_end = |at: &usize| {
+            let term = &fit.model.terms[*at];
+            !term.is_link() && term.is_at_end(&fit.values[fit.model.values_of(*at)], &fit.model.scales)
+        };
+        let Some(at) = (0..fit.model.terms.len()).find(is_at_end) else { return fit };
+        let simpler = simpler(&fit, at).into_iter().next();
+        simpler.map_or(fit.clone(), |(model, values)| self.polished(&Fit { model, values, ..fit }))
     }
 
     /// `best` without the terms, or the refinements of a law, that are not worth having beside the others.

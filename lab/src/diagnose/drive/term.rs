@@ -206,6 +206,7 @@ impl Term {
         let stiffness = Range::relative(scales.inertia * swing * swing, scales.inertia * fastest * fastest);
         let damping = Range::relative(1e-2 * scales.inertia / scales.duration_s, scales.inertia / scales.period_s);
         let share = Range::absolute(LOAD_SHARES.0, LOAD_SHARES.1, 0.1);
+        let friction_share = Range::absolute(0.0, 1.0, 0.1);
         match self {
             Self::Coulomb => vec![positive],
             Self::Stribeck => {
@@ -229,10 +230,10 @@ impl Term {
                 vec![Range::absolute(0.2 * scales.effort, scales.peak_effort, 0.02 * scales.effort)]
             }
             Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
-            Self::Compliance(_) => vec![stiffness, damping, share],
+            Self::Compliance(_) => vec![stiffness, damping, share, friction_share],
             Self::Play(_) => {
                 let play = Range::relative(0.05 * scales.resolution, 0.2 * scales.travel);
-                vec![stiffness, damping, share, play]
+                vec![stiffness, damping, share, play, friction_share]
             }
             Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],
             Self::ForceDelay => vec![Range::absolute(-2.0 * scales.period_s, 0.05, scales.period_s)],
@@ -296,11 +297,18 @@ impl Term {
             Self::EffortLimit => law.effort_limit = values[0],
             Self::EffortLag => law.effort_lag_s = values[0],
             Self::Compliance(encoder) | Self::Play(encoder) => {
+                let (play, friction_share) = match self {
+                    Self::Play(_) => (values[3], values[4]),
+                    _ => (0.0, values[3]),
+                };
+                let load_viscous = friction_share * law.viscous;
+                law.viscous -= load_viscous;
                 law.link = Some(Link {
                     stiffness: values[0],
                     damping: values[1],
                     load_share: values[2],
-                    play: values.get(3).copied().unwrap_or(0.0),
+                    play,
+                    load_viscous,
                     encoder: *encoder,
                 });
             }

@@ -41,6 +41,8 @@ pub struct TestLink {
     pub play: f64,
     /// Part of the mass that is the load's.
     pub load_share: f64,
+    /// Part of the viscous friction that acts on the load.
+    pub friction_share: f64,
 }
 
 impl TestDrive {
@@ -97,11 +99,12 @@ impl TestDrive {
                     let damping = if strain == 0.0 { 0.0 } else { link.damping * (v - load_v) };
                     (link.stiffness * strain + damping, (1.0 - link.load_share) * self.mass)
                 });
+                let on_load = self.link.map_or(0.0, |link| link.friction_share * self.viscous);
                 if let Some(link) = self.link {
-                    load_v += step * passed / (link.load_share * self.mass);
+                    load_v += step * (passed - on_load * load_v) / (link.load_share * self.mass);
                     load_x += step * load_v;
                 }
-                let free = v + step * (drives - passed - self.viscous * v - self.load + white) / motor;
+                let free = v + step * (drives - passed - (self.viscous - on_load) * v - self.load + white) / motor;
                 let held = step * self.coulomb / motor;
                 v = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
                 x += step * v;

@@ -22,13 +22,15 @@ pub struct DriveTrial {
     pub effort: Vec<f64>,
     /// Contact force, N or N m, positive when the tool pushes; `None` in free motion.
     pub force: Option<Vec<f64>>,
+    /// Two-sided density of the force sensor's noise, which the model feels as a force on the load, N^2 s or (N m)^2 s.
+    pub force_density: f64,
 }
 
 /// Periods after which a pause is a gap: what the drive did meanwhile is unknown, and the filter starts anew.
 const GAP_PERIODS: f64 = 8.0;
 
 impl DriveTrial {
-    /// A trial of which every `every`-th row is taken as an encoder row.
+    /// A trial of which every `every`-th row is taken as an encoder row, and whose force is without noise.
     #[must_use]
     pub fn new(
         name: String,
@@ -44,7 +46,7 @@ impl DriveTrial {
         let period_s = median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(1.0);
         let restart =
             (0..time.len()).map(|row| row == 0 || time[row] - time[row - 1] > GAP_PERIODS * period_s).collect();
-        Self { name, time, position, restart, period_s, source_time, effort, force }
+        Self { name, time, position, restart, period_s, source_time, effort, force, force_density: 0.0 }
     }
 
     /// Median time between recorded rows, s.
@@ -87,6 +89,7 @@ impl DriveTrial {
             source_time: self.source_time.clone(),
             effort: self.effort.clone(),
             force: self.force.clone(),
+            force_density: self.force_density,
         }
     }
 

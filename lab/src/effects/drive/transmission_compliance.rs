@@ -1,6 +1,6 @@
 //! A cable, belt or gear that gives.
 
-use super::two_mass_link::TwoMassLink;
+use super::two_mass_link::{FRICTION_SHARE, MOTOR_SHARE, TwoMassLink};
 use crate::effects::{
     DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, geometric,
 };
@@ -16,9 +16,6 @@ const LINK_STIFFNESS: Parameter = Parameter::new(
     0.0,
     f64::INFINITY,
 );
-
-const MOTOR_SHARE: Parameter =
-    Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8);
 
 const DAMPING_RATIO: Parameter =
     Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.0, 5.0);
@@ -38,18 +35,7 @@ static SPEC: EffectSpec = EffectSpec {
         Form {
             name: "friction_on_both_sides",
             equation: "m1 d2y/dt2 + b1 v_y = effort - T, m1 = motor_share m, b1 = friction_share b, T = link_stiffness (y - x) + c (v_y - v), c = 2 damping_ratio sqrt(link_stiffness m1); (m - m1) a + (b - b1) v = T - F",
-            parameters: &[
-                LINK_STIFFNESS,
-                MOTOR_SHARE,
-                DAMPING_RATIO,
-                Parameter::new(
-                    "friction_share",
-                    Word::same("1"),
-                    "share of the viscous friction on the motor's side",
-                    0.0,
-                    1.0,
-                ),
-            ],
+            parameters: &[LINK_STIFFNESS, MOTOR_SHARE, DAMPING_RATIO, FRICTION_SHARE],
         },
     ],
     excited_by: "quick changes of effort, frequencies near the resonance",

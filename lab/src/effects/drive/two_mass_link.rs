@@ -1,7 +1,16 @@
 //! What joins motor and tool, where something gives or plays between them, followed step by step.
 
 use crate::effects::cubic_segment::CubicSegment;
-use crate::effects::{DriveState, EffectState};
+use crate::effects::{DriveState, EffectState, Parameter};
+use crate::rig::Word;
+
+/// What a motor and a tool share of one mass.
+pub const MOTOR_SHARE: Parameter =
+    Parameter::new("motor_share", Word::same("1"), "share of the inertia on the motor's side", 0.02, 0.8);
+
+/// What they share of one viscous friction.
+pub const FRICTION_SHARE: Parameter =
+    Parameter::new("friction_share", Word::same("1"), "share of the viscous friction on the motor's side", 0.0, 1.0);
 
 /// Motor and tool, coupled by a spring with a gap.
 pub struct TwoMassLink {
