@@ -49,6 +49,14 @@ pub enum Ended {
 const SETTLING_ROWS: usize = 3;
 
 impl Data<'_> {
+    /// Density of all that `model` leaves to chance under `noise`, N^2 s: what acts on a rigid body as its disturbance holds the force sensor's
+    /// noise, which beside a link acts on the load as a part of its own.
+    #[must_use]
+    pub fn unexplained_density(&self, model: &Model, noise: &Noise) -> f64 {
+        let of_force = self.trials.iter().map(|trial| trial.force_density).fold(0.0, f64::max);
+        noise.disturbance() + if model.has_link() { of_force } else { 0.0 }
+    }
+
     /// Innovations of every trial under `model`.
     #[must_use]
     pub fn innovations(&self, model: &Model, values: &[f64], noise: &Noise) -> Vec<Innovations> {

@@ -59,7 +59,7 @@ impl Folds {
             let mut noise = fit.noise;
             search_noise(&unseen, &fit.model, &values, &mut noise);
             let own_rows = unseen.trials.iter().map(DriveTrial::len).sum::<usize>();
-            density += noise.disturbance() * own_rows as f64;
+            density += unseen.unexplained_density(&fit.model, &noise) * own_rows as f64;
             rows += own_rows;
             let law = fit.model.law(&values);
             for (piece, (trial, start)) in self.halves[1 - half].iter().zip(&self.places[1 - half]) {

@@ -84,6 +84,10 @@ const GAP_STEP: f64 = 0.15;
 const SHARE_STEP: f64 = 0.1;
 const LEAST_STEP: f64 = 0.1;
 
+/// Rounds of that search at most, six likelihoods each, and the gain of one, nats, below which it takes shorter steps.
+const MOST_ROUNDS: usize = 30;
+const LEAST_GAIN: f64 = 1.0;
+
 /// A likelier play near `play`, its last term, if there is one: steps along each direction, halved when none of them gains (generating set
 /// search: T. G. Kolda, R. M. Lewis, V. Torczon, *SIAM Review* 45, 2003, 385). The likelihood has a maximum for every order in which the
 /// sides strike, and a search by its slope ends in the nearest.
@@ -105,12 +109,15 @@ pub fn likelier_around(data: &Data<'_>, play: &Fit) -> Fit {
     };
     let mut best = play.clone();
     let mut part = 1.0;
-    while part > LEAST_STEP {
+    for _ in 0..MOST_ROUNDS {
+        if part <= LEAST_STEP {
+            break;
+        }
         let [k, s, g] = [STIFFNESS_STEP, SHARE_STEP, GAP_STEP].map(|step| part * step);
         let directions = [[k, 0.0, 0.0], [-k, 0.0, 0.0], [0.0, s, 0.0], [0.0, -s, 0.0], [0.0, 0.0, g], [0.0, 0.0, -g]];
         let tried: Vec<Fit> = directions.into_par_iter().map(|direction| moved(&best, direction)).collect();
         let top = tried.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
-        match top.filter(|top| top.log_likelihood > best.log_likelihood) {
+        match top.filter(|top| top.log_likelihood > best.log_likelihood + LEAST_GAIN) {
             Some(top) => best = top,
             None => part *= 0.5,
         }

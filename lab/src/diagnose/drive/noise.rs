@@ -26,12 +26,6 @@ impl Noise {
         self.ln_encoder.exp()
     }
 
-    /// Root mean square of the disturbance up to `band_hz`, N or N m.
-    #[must_use]
-    pub fn disturbance_rms(&self, band_hz: f64) -> f64 {
-        (2.0 * self.disturbance() * band_hz).sqrt()
-    }
-
     /// Frequency, Hz, up to which the disturbance exceeds what the encoder's noise amounts to as a force, inertia (2 pi f)^2 x:
     /// above it nothing can be said of a force from rows that are `period_s` apart.
     #[must_use]

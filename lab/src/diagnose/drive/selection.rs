@@ -61,7 +61,7 @@ impl Search<'_> {
     /// Unexplained force of a fit in the common band, N or N m.
     #[must_use]
     pub fn unexplained(&self, fit: &Fit) -> f64 {
-        fit.noise.disturbance_rms(self.band_hz)
+        (2.0 * self.data.unexplained_density(&fit.model, &fit.noise) * self.band_hz).sqrt()
     }
 
     /// What `more` has over `less`.
@@ -141,7 +141,8 @@ impl Search<'_> {
                 say("the drive: two bodies");
                 link_searches += 1;
                 let found = links::found(&self.data, rigid, &self.disturbance(rigid), &self.sides);
-                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit))));
+                let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
+                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest))));
             }
             grown.retain(|fit| !is_at_end(fit));
             let grown = distinct(grown);
@@ -201,10 +202,11 @@ impl Search<'_> {
         fit(&self.data, &start.model, &start.values, start.noise, effort)
     }
 
-    /// The same of a link that was looked for on a stretch; a play is looked for around where that ends, too.
-    fn polished_link(&self, start: &Fit) -> Fit {
+    /// The same of a link that was looked for on a stretch; a play that is likelier than the `likeliest` rigid law is looked for around
+    /// where that ends, too.
+    fn polished_link(&self, start: &Fit, likeliest: f64) -> Fit {
         let fit = self.polished(start);
-        if !fit.model.has("backlash") {
+        if !fit.model.has("backlash") || fit.log_likelihood < likeliest {
             return fit;
         }
         let around = self.polished(&links::likelier_around(&self.data, &fit));
