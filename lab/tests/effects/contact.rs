@@ -26,6 +26,32 @@ fn damping_that_grows_with_depth_is_its_equation() {
     assert!(most > 0.5, "{most} N of it");
 }
 
+/// Once touched, the surface pulls by one force, in it and above it, up to the height at which it lets go, and never before the touch.
+#[test]
+fn an_attraction_pulls_by_its_force_until_its_height() {
+    let (pull, height) = (0.2, 3e-3);
+    let table = format!(
+        "[[effect]]\nname = \"adhesion\"\nform = \"attraction\"\npull_off_force_n = {pull}\nrelease_height_m = {height}\n"
+    );
+    let rig = with(&rig(REFERENCE, false), &table);
+    let plain = run(&crate::bench::rig(REFERENCE, false));
+    let recording = run(&rig);
+    let (mut touched, mut above) = (false, 0);
+    for row in 0..4000 {
+        let (x, _) = REFERENCE.at(row as f64 / RATE);
+        // A row within a micrometre of an edge may lie on either side of it.
+        if x.abs() < 1e-6 || (x + height).abs() < 1e-4 {
+            touched |= x > 0.0;
+            continue;
+        }
+        touched = if x > 0.0 { true } else { touched && x > -height };
+        let expected = force(&plain)[row] - if touched { pull } else { 0.0 };
+        close(force(&recording)[row], expected, 1e-12, "force");
+        above += usize::from(touched && x < 0.0);
+    }
+    assert!(above > 20, "{above} rows above the surface");
+}
+
 #[test]
 fn a_spring_that_stiffens_exponentially_is_its_equation() {
     let rig = with(&rig(REFERENCE, false), "[[effect]]\nname = \"nonlinear_stiffness\"\nstiffening_1_m = 120\n");

@@ -139,3 +139,19 @@ fn a_motor_as_heavy_as_the_whole_is_refused() {
     let error = palpate_lab::simulate::simulate(&rig, 1, "rig.toml").unwrap_err().to_string();
     assert!(error.contains("motor_share") && error.contains("from 0.02 to 0.8"), "{error}");
 }
+
+/// The level of friction at rest is that of the side to which the drive is pushed, not of the one from which it pushes.
+#[test]
+fn a_drive_at_rest_is_held_by_the_friction_of_the_side_that_it_is_pushed_to() {
+    let table = "[[effect]]\nname = \"coulomb_friction\"\nforward_level_n = 1.0\nbackward_level_n = 0.3\n";
+    let travel = |depth: f64| {
+        let reference = Reference { free_depth: 0.0, contact_depth: depth, sine_amplitude: 0.0, ..REFERENCE };
+        let mut rig = with(&free(reference), table);
+        rig.control = Some(Control { effort_saturation: 0.8, ..CONTROL });
+        let recording = run(&rig);
+        assert!(largest(recording.effort.as_ref().unwrap()) > 0.79);
+        largest(&recording.position.iter().map(|x| x - recording.position[0]).collect::<Vec<_>>())
+    };
+    assert_eq!(travel(10e-3), 0.0, "0.8 N against 1.0 N");
+    assert!(travel(-10e-3) > 1e-3, "0.8 N against 0.3 N: {} m", travel(-10e-3));
+}

@@ -59,3 +59,27 @@ fn effects_come_before_noise_and_steps_and_the_chance_stays_the_same() {
         close(other / 0.05, (other / 0.05).round(), 1e-9, "whole steps");
     }
 }
+
+/// Mount, response, zero, range: what is stated last in the rig file still acts first where it is nearer to the tool.
+#[test]
+fn effects_of_the_sensor_act_from_the_tool_outwards_whatever_their_order_in_the_file() {
+    let [gain, bias, limit] = [
+        "name = \"force_gain\"\ngain_error = 0.5\n",
+        "name = \"force_bias\"\nbias_n = 0.4\n",
+        "name = \"force_saturation\"\nlimit_n = 2.5\nknee = 0.01\n",
+    ]
+    .map(|table| format!("[[effect]]\n{table}"));
+    let plain = run(&rig(REFERENCE, false));
+    for tables in [format!("{gain}{bias}{limit}"), format!("{limit}{bias}{gain}")] {
+        let reads = run(&with(&rig(REFERENCE, false), &tables));
+        let mut clipped = 0;
+        for (found, there) in force(&reads).iter().zip(force(&plain)) {
+            let before_range = 1.5 * there + 0.4;
+            let over = before_range.abs() - 2.5;
+            let expected = before_range.abs() - 0.025 * (over / 0.025).exp().ln_1p();
+            close(found.abs(), expected, 1e-9, "gain, then zero, then range");
+            clipped += usize::from(over > 0.5);
+        }
+        assert!(clipped > 100, "{clipped} rows beyond the range");
+    }
+}

@@ -104,3 +104,60 @@ pub fn rms(data: &Data<'_>, columns: &[Vec<f64>]) -> f64 {
         .fold((0.0, 0usize), |(sum, count), (value, _)| (sum + value * value, count + 1));
     (sum / count.max(1) as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::{RATE, TestContact};
+    use super::super::trial::ContactTrial;
+    use super::*;
+    use crate::diagnose::term::Term;
+
+    /// A law with the sensor's bias, fitted to `trials` as a whole.
+    fn with_bias(data: &Data<'_>) -> Fit {
+        let nominal = nominal_fit(data, &TestContact::nominal());
+        let bias = Term { effect: crate::effects::find("force_bias").unwrap(), form: 0 };
+        let start: Vec<f64> = nominal.values.iter().copied().chain([0.1]).collect();
+        data.fit(&nominal.model.with(bias), &start, Effort::FULL)
+    }
+
+    fn mean(column: &[f64]) -> f64 {
+        column.iter().sum::<f64>() / column.len() as f64
+    }
+
+    /// A zero that is off by 0.4 N in the first of two trials alone: what the other taught knows nothing of it.
+    #[test]
+    fn what_lives_in_one_trial_is_not_taken_from_it_by_the_other() {
+        let trials = [TestContact { zero: 0.4, ..TestContact::PLAIN }.trial(1), TestContact::PLAIN.trial(2)];
+        let data = Data::new(&trials);
+        let whole = with_bias(&data);
+        let held = Folds::of(&data).held_out(&data, &whole);
+        let bias = whole.model.first_value_of(0);
+        assert!((held.values[0][bias] - 0.4).abs() < 0.01 && held.values[1][bias].abs() < 0.01, "{:?}", held.values);
+        // The first is judged without a bias, the second with one of 0.4 N. A leak leaves nothing, the whole's value half of it.
+        for (column, left) in held.residual.iter().zip([0.4, -0.4]) {
+            assert!((mean(column) - left).abs() < 0.02, "{} N", mean(column));
+        }
+        // And the energy is that of these residuals.
+        let rows = held.residual.iter().zip(&data.weights).flat_map(|(column, weights)| column.iter().zip(weights));
+        let energy: f64 = rows.map(|(rest, weight)| (rest * weight).powi(2)).sum();
+        assert!((held.energy / energy - 1.0).abs() < 1e-12);
+    }
+
+    /// A single trial is parted in stretches by turns: what lives in the even ones is left in them whole.
+    #[test]
+    fn what_lives_in_every_other_stretch_of_a_single_trial_is_not_taken_from_it() {
+        let mut recording = TestContact::PLAIN.recording(3);
+        let stretch = ((12.0 * RATE) as usize).div_ceil(BLOCKS);
+        let force = recording.force.as_mut().unwrap();
+        force.iter_mut().enumerate().filter(|(row, _)| row / stretch % 2 == 0).for_each(|(_, force)| *force += 0.4);
+        let trials: [ContactTrial; 1] = [TestContact::seen(&recording)];
+        let data = Data::new(&trials);
+        let held = Folds::of(&data).held_out(&data, &with_bias(&data));
+        let side = |odd: usize| {
+            let rows = held.residual[0].iter().enumerate().filter(|(row, _)| row / stretch % 2 == odd);
+            mean(&rows.map(|(_, rest)| *rest).collect::<Vec<_>>())
+        };
+        assert!((side(0) - 0.4).abs() < 0.03 && (side(1) + 0.4).abs() < 0.03, "{} and {} N", side(0), side(1));
+    }
+}

@@ -409,6 +409,39 @@ mod tests {
         assert!((value - 0.4).abs() < 0.01, "{value}");
     }
 
+    /// A bias that takes a six-hundredth of what the force varies by, which 6000 rows tell beyond doubt and nobody would call missing physics.
+    #[test]
+    fn what_is_significant_and_of_no_size_is_not_named() {
+        let contact = TestContact { zero: 2.6e-3, ..TestContact::PLAIN };
+        let trials = [1, 2].map(|seed| contact.trial(seed));
+        let data = Data::new(&trials);
+        let nominal = nominal_fit(&data, &TestContact::nominal());
+        let bias = Term { effect: crate::effects::find("force_bias").unwrap(), form: 0 };
+        let start: Vec<f64> = nominal.values.iter().copied().chain([1e-3]).collect();
+        let more = data.fit(&nominal.model.with(bias), &start, Effort::FULL);
+        let search = Search {
+            coarse: Data::new(&trials),
+            nominal: nominal.clone(),
+            data,
+            circumstances: Circumstances::default(),
+        };
+        let worth = search.worth(&more, &nominal);
+        assert!(worth.gain > LEAST_GAIN + worth.price, "{} nats", worth.gain);
+        assert!(!search.is_worth(&more, &nominal), "{} of the force", worth.part_of_force);
+        assert_eq!(names(&found([&contact; 2])), Vec::<&str>::new());
+    }
+
+    /// Twenty pairs of trials of nothing: of an alarm in a hundred, one of twenty would be rare, and of one in five none is one in eighty.
+    #[test]
+    fn nothing_is_named_where_nothing_is_missing_draw_after_draw() {
+        for seed in 100..120 {
+            let trials = || [seed, seed + 50].map(|seed| TestContact::PLAIN.trial(seed)).to_vec();
+            let outcome =
+                identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+            assert_eq!((names(&outcome), outcome.verdict), (vec![], Verdict::Parameters), "seed {seed}");
+        }
+    }
+
     #[test]
     fn a_simulation_that_is_the_recording_leaves_nothing() {
         let mut outcome = found([&TestContact::PLAIN; 2]);

@@ -86,3 +86,35 @@ impl Effect for GravityLoad {
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// Moments of a weight on an arm where it is known without a formula: down, level, up and level again.
+    #[test]
+    fn a_weight_by_angle_is_its_sine_and_cosine_at_the_quarters_of_a_turn() {
+        let (sine, cosine, load) = (3.0, 0.7, -0.2);
+        let moment = |angle: f64| {
+            let mut push = DriveState {
+                step: 1e-3,
+                position: angle,
+                velocity: 0.0,
+                at_rest: true,
+                force: 0.0,
+                effort: 0.0,
+                inertia: 1.0,
+                viscous: 0.0,
+                resistance: 0.0,
+            };
+            GravityLoad.act_on_drive(1, &[sine, cosine, load], &mut EffectState::default(), &mut push);
+            push.resistance
+        };
+        for (angle, expected) in
+            [(0.0, cosine + load), (FRAC_PI_2, sine + load), (PI, -cosine + load), (3.0 * FRAC_PI_2, -sine + load)]
+        {
+            assert!((moment(angle) - expected).abs() < 1e-14, "{angle}: {}", moment(angle));
+        }
+    }
+}
