@@ -431,6 +431,23 @@ mod tests {
         assert_eq!(names(&found([&contact; 2])), Vec::<&str>::new());
     }
 
+    /// A ripple along the depth, three waves within it and eight times the sensor's noise: no effect of the list is one.
+    #[test]
+    fn what_no_effect_explains_is_unknown() {
+        let rippled = |seed: u64| {
+            let mut recording = TestContact::PLAIN.recording(seed);
+            let (depths, force) = (&recording.position, recording.force.as_mut().unwrap());
+            for (x, force) in depths.iter().zip(force).filter(|(x, _)| **x > 0.0) {
+                *force += 0.16 * (std::f64::consts::TAU * x / 2.5e-3).sin();
+            }
+            TestContact::seen(&recording)
+        };
+        let trials = || vec![rippled(1), rippled(2)];
+        let outcome =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        assert_eq!((names(&outcome), outcome.verdict), (vec![], Verdict::Unknown));
+    }
+
     /// Twenty pairs of trials of nothing: of an alarm in a hundred, one of twenty would be rare, and of one in five none is one in eighty.
     #[test]
     fn nothing_is_named_where_nothing_is_missing_draw_after_draw() {
