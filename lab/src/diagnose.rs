@@ -14,6 +14,7 @@ pub mod evidence;
 pub mod experiment;
 pub mod golden_section;
 pub mod interval;
+pub mod jackknife;
 pub mod linalg;
 pub mod local_level;
 pub mod model_comparison;

@@ -9,14 +9,12 @@ pub struct Folds {
     halves: [Vec<Vec<bool>>; 2],
 }
 
-/// Residuals under the values of the other half, and the values that each half gave.
+/// Residuals under the values of the other half.
 pub struct HeldOut {
     /// Measured less predicted, N or N m, a column a trial.
     pub residual: Vec<Vec<f64>>,
     /// Squares of it, weighted.
     pub energy: f64,
-    /// Fitted to the first half, and to the second.
-    pub values: [Vec<f64>; 2],
 }
 
 /// Blocks of a single trial.
@@ -73,14 +71,13 @@ impl Folds {
         let mut residual: Vec<Vec<f64>> = data.trials.iter().map(|trial| vec![0.0; trial.len()]).collect();
         let mut energy = 0.0;
         let has_own = (0..taught[0].len()).any(|at| model.owner(at).is_some());
-        let values = [0, 1].map(|half| {
-            let taught = taught[half].clone();
+        for (half, taught) in taught.into_iter().enumerate() {
             let unseen = self.masked(data, 1 - half);
             let placed = if has_own && data.trials.len() > 1 {
                 let is_shared = |at: usize| model.owner(at).is_none() && !(model.own.surface && at == index::SURFACE);
                 unseen.fit_holding(model, &taught, STEPS, &is_shared).values
             } else {
-                taught.clone()
+                taught
             };
             for (number, weights) in unseen.weights.iter().enumerate() {
                 let own = data.residual(model, &placed, number);
@@ -89,9 +86,8 @@ impl Folds {
                     energy += (own[row] * weight).powi(2);
                 }
             }
-            taught
-        });
-        HeldOut { residual, energy, values }
+        }
+        HeldOut { residual, energy }
     }
 }
 

@@ -1,35 +1,35 @@
-//! 95 % intervals of a fitted contact: from the curvature of least squares, from blocks of the recording, and from its halves.
+//! 95 % intervals of a fitted contact: from the curvature of least squares, and from leaving out stretches of the recordings.
 
 use super::fit::{Data, Fit, Rest};
-use crate::diagnose::interval::{Intervals, NORMAL_97_5, spread};
+use crate::diagnose::interval::{Clusters, Intervals, spread};
+use crate::diagnose::jackknife::stretch_of_rows;
 
-/// Blocks that the score's scatter is taken over, and integrated autocorrelation times that one is long at the least.
-const BLOCKS: usize = 40;
-const BLOCK_TIMES: f64 = 3.0;
-
-/// The interval of each value of `fit`; `halves` are the values that two halves of the rows gave.
+/// The interval of each value of `fit`.
 #[must_use]
-pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest, halves: &[Vec<f64>; 2]) -> Intervals {
+pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
     let ranges = fit.model.ranges(&fit.values);
     let free: Vec<usize> = (0..fit.values.len()).filter(|at| ranges[*at].free).collect();
     let columns = data.columns(&fit.model, &fit.values, &ranges, &free, &rest.rows);
     let priors: Vec<f64> =
         free.iter().map(|at| ranges[*at].prior.map_or(0.0, |(_, sigma)| (ranges[*at].size / sigma).powi(2))).collect();
-    let block = (data.rows() / BLOCKS).max((BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
-    let found = spread(&rest.rows, &columns, &priors, rest.power, block);
+    let counts: Vec<Vec<bool>> =
+        data.weights.iter().map(|trial| trial.iter().map(|weight| *weight > 0.0).collect()).collect();
+    let stretch = stretch_of_rows(&counts);
+    // Rounding is a function of the place, the same in whatever trial and however long after.
+    let is_stepped = data.trials.iter().all(|trial| trial.encoder_steps.len() == trial.len());
+    let place: Vec<i64> =
+        data.trials.iter().filter(|_| is_stepped).flat_map(|trial| trial.encoder_steps.iter().copied()).collect();
+    let found = spread(&rest.rows, &columns, &priors, rest.power, Clusters { stretch: &stretch, place: &place });
     let mut all: Vec<[f64; 2]> = fit.values.iter().map(|value| [*value; 2]).collect();
     let slope = |at: &usize| if ranges[*at].by_factors { fit.values[*at] } else { ranges[*at].size };
     let covariance = found.covariance_of(fit.values.len(), &free, &free.iter().map(slope).collect::<Vec<_>>());
-    for (&at, steps) in free.iter().zip(found.deviations) {
+    for (&at, steps) in free.iter().zip(found.half_widths) {
         let (range, value) = (&ranges[at], fit.values[at]);
-        let steps = NORMAL_97_5 * steps;
-        // Two halves that differ by more than noise say how far the law can be trusted.
-        let apart = 0.5 * NORMAL_97_5 * (halves[0][at] - halves[1][at]).abs();
         let [low, high] = if range.by_factors {
-            let factor = steps.hypot(apart / value.abs().max(f64::MIN_POSITIVE)).min(50.0).exp();
+            let factor = steps.min(50.0).exp();
             [value / factor, value * factor]
         } else {
-            let half = (range.size * steps).hypot(apart);
+            let half = range.size * steps;
             [value - half, value + half]
         };
         all[at] = [low.max(range.low), high.min(range.high)];

@@ -130,7 +130,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let verdict = verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
     // Beside names that stand for the mismatch, too: what a textbook's law leaves of a real thing is no less of use for being told.
     let learned = if is_notable(search, &fit, &rest) { learned(data, &fit) } else { None };
-    let spread = intervals(data, &fit, &rest, &improved.values);
+    let spread = intervals(data, &fit, &rest);
     Outcome {
         trials: Vec::new(),
         noise: Vec::new(),

@@ -118,12 +118,18 @@ impl Data<'_> {
         rows
     }
 
-    /// Standardised innovations at `fit` and their derivatives by one step of each value.
+    /// Standardised innovations at `fit` and their derivatives by one step of each value: differences from `apart` steps below the value to as
+    /// many above, within its range.
     #[must_use]
-    pub fn linearised(&self, fit: &Fit) -> (Vec<f64>, Vec<Vec<f64>>) {
+    pub fn linearised(&self, fit: &Fit, apart: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let at = Linearisation::of(self, &fit.model, &fit.values, &fit.noise);
-        let columns = at.columns(&fit.values, &(0..fit.values.len()).collect::<Vec<_>>());
-        (at.innovations, columns)
+        let columns = apart.par_iter().enumerate().map(|(value, apart)| at.secant(&fit.values, value, *apart));
+        (at.innovations.clone(), columns.collect())
+    }
+
+    /// Scored rows of each trial.
+    pub fn scored_rows(&self) -> impl Iterator<Item = usize> {
+        self.trials.iter().map(|trial| trial.rows_since_restart().filter(|since| *since >= SETTLING_ROWS).count())
     }
 }
 
@@ -161,6 +167,23 @@ impl<'a> Linearisation<'a> {
                 each.map(|(trial, gains)| one_body(trial, &law, self.noise, gains, false)).collect()
             }
         }
+    }
+
+    /// Derivative of the standardised innovations by one step of value `at`, over `apart` steps to either side of it; zero where its range
+    /// holds it.
+    fn secant(&self, values: &[f64], at: usize, apart: f64) -> Vec<f64> {
+        let range = &self.ranges[at];
+        let ends = [-apart, apart].map(|steps| range.moved(values[at], steps).clamp(range.low, range.high));
+        let between = range.steps_between(ends[0], ends[1]);
+        if between <= 0.0 {
+            return vec![0.0; self.innovations.len()];
+        }
+        let [below, above] = ends.map(|end| {
+            let mut moved = values.to_vec();
+            moved[at] = end;
+            self.data.standardised(&self.passes(&moved), &self.base)
+        });
+        below.iter().zip(&above).map(|(below, above)| (above - below) / between).collect()
     }
 
     /// Derivatives of the standardised innovations by one step of each value in `free`.

@@ -1,30 +1,28 @@
-//! 95 % intervals of a fitted drive: from the curvature of the likelihood, from blocks of the recording, and from its halves.
+//! 95 % intervals of a fitted drive: from the curvature of the likelihood, and from leaving out stretches of the recordings.
 
-use super::criteria::{BLOCK_ROWS, BLOCK_S};
 use super::fit::{Data, Fit};
 use super::term::Step;
-use crate::diagnose::interval::{Intervals, NORMAL_97_5, spread};
+use crate::diagnose::interval::{Clusters, Intervals, spread_over_own_width};
+use crate::diagnose::jackknife::stretch_of_rows;
 
-/// The interval of each value of `fit`; `halves` are the values that two halves of the recordings gave.
+/// The interval of each value of `fit`. The distance to the optimum of the likelihood as it is over the interval, where single maxima no longer
+/// count, is part of it.
 #[must_use]
-pub fn intervals(data: &Data<'_>, fit: &Fit, halves: &[Vec<f64>; 2]) -> Intervals {
-    let (innovations, columns) = data.linearised(fit);
+pub fn intervals(data: &Data<'_>, fit: &Fit) -> Intervals {
     let ranges = fit.model.ranges();
-    let block = ((BLOCK_S / fit.model.scales.period_s) as usize).max(BLOCK_ROWS);
-    // Standardised innovations have a power of one, and nothing is known of a value beforehand.
-    let found = spread(&innovations, &columns, &vec![0.0; columns.len()], 1.0, block);
+    let counts: Vec<Vec<bool>> = data.scored_rows().map(|rows| vec![true; rows]).collect();
+    let stretch = stretch_of_rows(&counts);
+    let rows = Clusters { stretch: &stretch, place: &[] };
+    let found = spread_over_own_width(ranges.len(), rows, |apart| data.linearised(fit, apart));
     let each = fit.values.iter().enumerate().map(|(at, value)| {
-        let steps = NORMAL_97_5 * found.deviations[at];
-        // Two halves that differ by more than noise say how far the law can be trusted.
-        let apart = 0.5 * NORMAL_97_5 * (halves[0][at] - halves[1][at]).abs();
         let range = &ranges[at];
-        let half = (range.slope(*value).abs() * steps).hypot(apart);
+        let steps = found.half_widths[at].hypot(found.remaining[at]);
         let [low, high] = match range.step {
             Step::Relative => {
-                let factor = (half / value.abs().max(f64::MIN_POSITIVE)).min(50.0).exp();
+                let factor = steps.min(50.0).exp();
                 [value / factor, value * factor]
             }
-            Step::Absolute(_) => [value - half, value + half],
+            Step::Absolute(size) => [value - size * steps, value + size * steps],
         };
         [low.max(range.low), high.min(range.high)]
     });

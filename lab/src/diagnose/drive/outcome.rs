@@ -149,7 +149,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     let refitted = folds.held_out(data, &search.nominal, &common);
     let (fit, improved, named) = believed(search, &folds, &common, chosen.fit.clone());
     let expected_noise = expected_noise(data, &fit, &common, seed);
-    let spread = intervals(data, &fit, &improved.values);
+    let spread = intervals(data, &fit);
     let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed));
     let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], recorded_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);

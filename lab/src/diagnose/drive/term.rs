@@ -86,6 +86,15 @@ impl Range {
         }
     }
 
+    /// Steps from `start` to `end`.
+    #[must_use]
+    pub fn steps_between(&self, start: f64, end: f64) -> f64 {
+        match self.step {
+            Step::Relative => (end / start).ln(),
+            Step::Absolute(size) => (end - start) / size,
+        }
+    }
+
     /// d value / d steps.
     #[must_use]
     pub fn slope(&self, value: f64) -> f64 {
