@@ -52,7 +52,7 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
             let damping_ratio = (ratio(values[1]), ends[1].map(ratio));
             (1, vec![(values[0], ends[0]), of_motor(2), damping_ratio, of_motor(3)])
         }
-        Term::Play(_) => (1, vec![(values[3], ends[3]), of_motor(2), fixed(values[0]), of_motor(4)]),
+        Term::Play(_) => (1, vec![(values[3], ends[3]), of_motor(2), (values[0], ends[0]), of_motor(4)]),
         Term::Curve { .. } => return None,
     };
     let (values, intervals) = all.into_iter().unzip();
@@ -91,4 +91,44 @@ pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Ter
         _ => return None,
     };
     Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::model::Model;
+    use super::super::noise::Noise;
+    use super::*;
+    use crate::diagnose::drive::fit::Ended;
+
+    /// The stiffness of a play's flanks is fitted like its gap: an interval without width would be a claim that nothing backs.
+    #[test]
+    fn every_value_of_a_play_has_the_interval_of_its_fit() {
+        let scales = Scales {
+            effort: 2.0,
+            peak_effort: 5.0,
+            speed: 0.2,
+            travel: 0.05,
+            lowest: -0.025,
+            period_s: 1e-3,
+            latest_effort_s: 0.02,
+            duration_s: 3.0,
+            inertia: 0.8,
+            viscous: 4.0,
+            resolution: 1e-5,
+            is_rotary: false,
+        };
+        let fit = Fit {
+            model: Model { terms: vec![Term::Play(Side::Motor)], scales },
+            values: vec![0.8, 4.0, 0.0, 4e4, 30.0, 0.6, 2e-4, 0.7],
+            noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
+            log_likelihood: 0.0,
+            ended: Ended::Converged,
+        };
+        let intervals: Vec<[f64; 2]> = fit.values.iter().map(|value| [value - 0.1, value + 0.1]).collect();
+        let play = named(&fit, &intervals, 0).unwrap();
+        for ((value, ends), expected) in play.values.iter().zip(&play.intervals).zip([2e-4, 0.4, 4e4, 0.3]) {
+            assert!((value / expected - 1.0).abs() < 1e-9, "{value}");
+            assert!((ends[0] - (expected - 0.1)).abs() < 1e-9 && (ends[1] - (expected + 0.1)).abs() < 1e-9, "{ends:?}");
+        }
+    }
 }
