@@ -16,6 +16,7 @@ use crate::fleet::{self, DiagnoseAllArgs};
 use crate::interrupt;
 use crate::investigate::trial_of_method::{self, InvestigateChallengeArgs};
 use crate::investigate::{self, InvestigateArgs};
+use crate::joints::{self, DiagnoseJointsArgs};
 use crate::listen::{self, ListenArgs};
 use crate::look::{self, LookArgs};
 use crate::profile::{self, ProfileArgs};
@@ -39,6 +40,8 @@ enum Command {
     Diagnose(DiagnoseArgs),
     /// Diagnose many rigs into one table, and show which stand out and what changed
     DiagnoseAll(DiagnoseAllArgs),
+    /// Diagnose each joint of an arm, in one report
+    DiagnoseJoints(DiagnoseJointsArgs),
     /// List what a recording holds: columns or topics, rates, ranges and gaps
     Look(LookArgs),
     /// Diagnose, design the next trial, run it, and diagnose again
@@ -93,6 +96,7 @@ pub fn run_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>
     let done = match parsed.command {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::DiagnoseAll(args) => fleet::run(&args),
+        Command::DiagnoseJoints(args) => joints::run(&args),
         Command::Look(args) => look::run(&args),
         Command::Investigate(args) => investigate::run(&args),
         Command::InvestigateChallenge(args) => trial_of_method::run(&args),

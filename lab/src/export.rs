@@ -44,6 +44,9 @@ pub struct ExportArgs {
     /// The sensor of the contact force, for effects of the sensor (MJCF)
     #[arg(long, value_name = "NAME")]
     pub sensor: Option<String>,
+    /// The rig file that was diagnosed: what the recordings add to its inertia becomes armature of the joint (MJCF)
+    #[arg(long, value_name = "RIG.toml")]
+    pub nominal: Option<PathBuf>,
     /// Write what the format can say and leave the rest out, instead of refusing
     #[arg(long)]
     pub partial: bool,
@@ -75,6 +78,8 @@ pub struct Export<'a> {
     pub source: String,
     /// Its effects.
     pub effects: Vec<FoundEffect>,
+    /// The rig that was diagnosed, where it is given.
+    pub nominal: Option<Rig>,
     /// The command line.
     pub args: &'a ExportArgs,
 }
@@ -105,7 +110,9 @@ pub struct Exported {
 /// As [`export`], and an output that cannot be written.
 pub fn run(args: &ExportArgs) -> Result<()> {
     let out = args.out.as_deref().map(|path| ("--out", path));
-    output_paths::check(&[&args.improved, &args.into], out.as_slice())
+    let inputs: Vec<&Path> =
+        [&args.improved, &args.into].into_iter().chain(&args.nominal).map(PathBuf::as_path).collect();
+    output_paths::check(&inputs, out.as_slice())
         .map_err(|_| UsageError::new("--out", "an input of this very run", "another file to write to"))?;
     let exported = export(args)?;
     // To standard error: standard output is for the model.
@@ -131,7 +138,8 @@ pub fn export(args: &ExportArgs) -> Result<Exported, InputError> {
     let origin = args.improved.display().to_string();
     let source = args.improved.file_name().map_or_else(|| origin.clone(), |name| name.to_string_lossy().into_owned());
     let effects = found_effect::all(&rig, &origin)?;
-    let export = Export { rig: &rig, source, effects, args };
+    let nominal = args.nominal.as_deref().map(Rig::read).transpose()?;
+    let export = Export { rig: &rig, source, effects, nominal, args };
     let model = read_text(&args.into)?;
     let exported = match args.to {
         Target::Mjcf => mjcf::export(&export, &model)?,

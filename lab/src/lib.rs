@@ -15,6 +15,7 @@ pub mod export;
 pub mod fleet;
 pub mod interrupt;
 pub mod investigate;
+pub mod joints;
 pub mod listen;
 pub mod look;
 pub mod outfile;

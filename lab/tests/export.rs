@@ -134,13 +134,44 @@ fn what_cannot_be_said_is_refused_by_name_and_left_to_the_stepper() {
     assert!(text.contains("frictionloss=\"0.45\"") && !text.contains("sublinear"), "{text}");
     let module = exported("python", MJCF, &both, &[]);
     assert!(
-        module.contains("(\"sublinear_friction\", {\"level\": 2.0, \"exponent\": 0.4, \"reference_speed\": 0.1})"),
+        module.contains(
+            "(\"sublinear_friction\", \"power\", {\"level\": 2.0, \"exponent\": 0.4, \"reference_speed\": 0.1})"
+        ),
         "{module}"
     );
     assert!(!module.contains("coulomb"), "{module}");
-    let contact = "[[effect]]\nname = \"adhesion\"\nadhesion_force_n = 0.2\ndecay_m = 0.001\n";
-    let (_folder, mut command) = export_as("python", MJCF, contact, &[]);
-    command.assert().code(1).stdout("");
+    let carried = "[[effect]]\nname = \"environment_mass\"\nmoved_mass_kg = 0.2\n";
+    refuses("python", MJCF, carried, &[], &["environment_mass", "not in the stepper either", "give it this mass"]);
+}
+
+#[test]
+fn a_contact_is_a_rig_file_within_the_stepper() {
+    let effects = "[[effect]]\nname = \"adhesion\"\nform = \"neck\"\npull_off_force_n = 0.2\nrelease_height_m = 0.001\n\
+                   [[effect]]\nname = \"force_gain\"\ngain_error = 0.05\n";
+    refuses("mjcf", MJCF, effects, &[], &["adhesion", "not a law of depth and rate", "force_gain"]);
+    let module = exported("python", MJCF, &format!("{COULOMB}{effects}"), &[]);
+    let tables = module.split("\"\"\"").nth(3).expect("the contact");
+    let contact = palpate_lab::rig::Rig::parse(tables, "CONTACT").expect("a rig file");
+    // Its contact, and of its effects those of the contact: the drive's are the model's, the sensor's come after the contact.
+    assert_eq!(contact.contact.expect("a contact").stiffness, 300.0);
+    assert_eq!(contact.effects.iter().map(|effect| effect.name.as_str()).collect::<Vec<_>>(), ["adhesion"]);
+    assert!(contact.drive.is_none() && module.contains("(\"force_gain\", "), "{module}");
+}
+
+#[test]
+fn what_the_recordings_add_to_the_inertia_becomes_armature() {
+    let (folder, mut command) = export_as("mjcf", MJCF, COULOMB, &[]);
+    let nominal = folder.path().join("rig.toml");
+    fs::write(&nominal, RIG.replace("mass_kg = 0.8", "mass_kg = 0.7")).expect("a file");
+    let output = command.arg("--nominal").arg(&nominal).output().expect("palpate");
+    let text = String::from_utf8(output.stdout).expect("text");
+    let armature: f64 =
+        text.split("armature=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("one").parse().expect("a number");
+    assert!((armature - 0.1).abs() < 1e-12, "{armature}");
+    assert!(text.contains("inertia 0.80000, given 0.70000") && output.stderr.is_empty(), "{text}");
+    // Less than the armature that is there cannot be taken away.
+    fs::write(&nominal, RIG.replace("mass_kg = 0.8", "mass_kg = 0.9")).expect("a file");
+    command.assert().code(1).stderr(contains("armature 0 kg").and(contains("take 0.10000 away")));
 }
 
 #[test]

@@ -118,6 +118,30 @@ fn what_is_wrong_with_a_channel_is_said() {
     refuses(&file("trial.mcap"), &unread, &["/note", "std_msgs/msg/String"]);
 }
 
+#[test]
+fn the_command_says_it_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let archive = folder.path().join("archive.csv");
+    std::fs::copy(file("trial.npz"), &archive).expect("a copy");
+    let drive = "[drive]\nmass_kg = 1.0\nviscous_n_s_m = 3.0\n";
+    let absent = MCAP.replace("elbow.position", "knee.position");
+    let faults: [(&Path, &str, &[&str]); 6] = [
+        (&archive, RIG, &["archive.csv", "a NPZ file", "CSV"]),
+        (&file("trial.mcap"), &absent, &["trial.mcap", "/joint_states:knee.position", "/joint_states:elbow.position"]),
+        (&file("unequal.npz"), RIG, &["unequal.npz", "force_N", "49 values", "50"]),
+        (&file("object.npz"), RIG, &["object.npz", "force_N", "object array"]),
+        (&file("nan.npz"), RIG, &["nan.npz", "force_N, value 8", "no number"]),
+        (&file("zstd.parquet"), RIG, &["zstd.parquet", "zstd", "Snappy"]),
+    ];
+    for (recording, rig, words) in faults {
+        let place = folder.path().join("rig.toml");
+        std::fs::write(&place, format!("{rig}{drive}")).expect("a rig");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+        let assert = command.args(["diagnose", "--rig"]).arg(&place).arg(recording).assert().code(1).stdout("");
+        words.iter().fold(assert, |assert, word| assert.stderr(contains(*word)));
+    }
+}
+
 fn look(name: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
     command.arg("look").arg(file(name));

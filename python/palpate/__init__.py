@@ -24,13 +24,16 @@ from . import _palpate
 
 __version__ = _palpate.__version__
 __all__ = [
+    "ContactLaw",
     "Diagnosis",
     "FleetRig",
     "InputError",
+    "JointsDiagnosis",
     "Parameter",
     "Physics",
     "RigResult",
     "diagnose",
+    "diagnose_joints",
     "diagnose_rig",
     "export",
     "fleet",
@@ -100,7 +103,37 @@ class Diagnosis:
 
     def _repr_html_(self) -> str:
         """The report, in a frame of its own: its page is whole and may not touch the notebook's."""
-        return f'<iframe srcdoc="{_html.escape(self.html)}" style="width: 100%; height: 800px; border: 0"></iframe>'
+        return _frame(self.html)
+
+
+class JointsDiagnosis(Mapping):
+    """The diagnoses of an arm's joints, by the joint's name.
+
+    `json` is the text that `palpate diagnose-joints --json` writes, `html` its page.
+    """
+
+    def __init__(self, json: str, html: str, joints: dict[str, Diagnosis]):
+        self.json, self.html, self._joints = json, html, joints
+
+    def __getitem__(self, joint: str) -> Diagnosis:
+        return self._joints[joint]
+
+    def __iter__(self):
+        return iter(self._joints)
+
+    def __len__(self) -> int:
+        return len(self._joints)
+
+    def __repr__(self) -> str:
+        return f"<palpate.JointsDiagnosis {self._joints!r}>"
+
+    def _repr_html_(self) -> str:
+        """The report of all joints."""
+        return _frame(self.html)
+
+
+def _frame(page: str) -> str:
+    return f'<iframe srcdoc="{_html.escape(page)}" style="width: 100%; height: 800px; border: 0"></iframe>'
 
 
 def _physics(entry: dict) -> Physics:
@@ -125,6 +158,37 @@ def diagnose(recordings, rig, *, simulation=None, load=None, effort=None, seed: 
 
     Raises InputError for a file, array or value at fault. Ctrl-C ends the wait at once; the work itself ends at its next step.
     """
+    with _as_input_error():
+        return Diagnosis(*_palpate.diagnose(*_joint(recordings, rig, simulation, load, effort), seed, progress))
+
+
+def diagnose_joints(
+    recordings, rigs, *, simulation=None, load=None, effort=None, seed: int = 1, progress=None
+) -> JointsDiagnosis:
+    """Diagnoses each joint of an arm by itself, in one report.
+
+    recordings, simulation, seed, progress: as in `diagnose`; the recordings hold all joints.
+    rigs: each joint's rig, a path or a dictionary of its tables, by the joint's name. Its `[columns]` name what is this joint's.
+    load, effort: what `diagnose` takes, by the joint's name, for those joints that have it.
+
+    Raises InputError for a file, array or value at fault, and for a load or effort of a joint that has no rig.
+    """
+    load, effort = load or {}, effort or {}
+    for name, given in (("load", load), ("effort", effort)):
+        for joint in given:
+            if joint not in rigs:
+                raise InputError(f"{name}[{joint!r}]", "a joint without a rig", f"one of {', '.join(rigs)}")
+    arm = [
+        (name, *_joint(recordings, rig, simulation, load.get(name), effort.get(name), f"[{name!r}]"))
+        for name, rig in rigs.items()
+    ]
+    with _as_input_error():
+        json, page, answers = _palpate.diagnose_joints(arm, seed, progress)
+    return JointsDiagnosis(json, page, {name: Diagnosis(*answer) for name, answer in zip(rigs, answers, strict=True)})
+
+
+def _joint(recordings, rig, simulation, load, effort, of=""):
+    """Rig, recordings and simulation as the extension module takes them; `of` names the joint in errors."""
     recordings, tables = _list(recordings), _rig(rig)
     simulation = [] if simulation is None else _list(simulation)
     if simulation and len(simulation) != len(recordings):
@@ -134,12 +198,35 @@ def diagnose(recordings, rig, *, simulation=None, load=None, effort=None, seed: 
         if arrays is not None:
             arrays = [arrays] if len(recordings) == 1 and not isinstance(arrays, (list, tuple)) else list(arrays)
             if len(arrays) != len(recordings):
-                raise InputError(name, f"{len(arrays)} arrays", f"one a recording, {len(recordings)} in all")
+                raise InputError(name + of, f"{len(arrays)} arrays", f"one a recording, {len(recordings)} in all")
             for columns, array in zip(added, arrays, strict=True):
-                columns.append((_column_name(name, rig), _array(name, array)))
+                columns.append((_column_name(name, rig), _array(name + of, array)))
     trials = [_recording(recording, columns) for recording, columns in zip(recordings, added, strict=True)]
-    with _as_input_error():
-        return Diagnosis(*_palpate.diagnose(tables, trials, [_recording(run, []) for run in simulation], seed, progress))
+    return tables, trials, [_recording(run, []) for run in simulation]
+
+
+class ContactLaw:
+    """The contact of a rig with its effects, for a simulator that has none of them: the tool's own engine, instant by instant.
+
+    rig: the path of a rig file, or a dictionary of its tables; it needs a `[contact]`.
+
+    Raises InputError for a rig at fault.
+    """
+
+    def __init__(self, rig):
+        with _as_input_error():
+            self._law = _palpate.ContactLaw(_rig(rig))
+
+    def force(self, time: float, position: float, velocity: float, acceleration: float = 0.0) -> float:
+        """The force on the tool in N (N m where the rig turns), positive when the tool pushes.
+
+        Called once an instant, in the order of time: the law may remember what was. time in s; position in m or rad as the rig counts it,
+        velocity and acceleration its rates.
+
+        Raises InputError for a value that is not finite, and for time that goes back.
+        """
+        with _as_input_error():
+            return self._law.force(time, position, velocity, acceleration)
 
 
 def read(recording, rig) -> dict[str, np.ndarray]:
@@ -152,7 +239,7 @@ def read(recording, rig) -> dict[str, np.ndarray]:
         return {name: np.frombuffer(values) for name, values in _palpate.read(_recording(recording, []), _rig(rig))}
 
 
-def export(improved, into, joint: str, *, to: str = "mjcf", actuator=None, sensor=None, partial: bool = False) -> str:
+def export(improved, into, joint: str, *, to: str = "mjcf", actuator=None, sensor=None, nominal=None, partial: bool = False) -> str:
     """The text of the model in the file `into`, with the physics that was found at `joint`; the file itself stays as it is.
 
     improved: a Diagnosis, or the path of an improved rig file. The joint's coordinate is taken for the rig's position and the force of its
@@ -160,6 +247,7 @@ def export(improved, into, joint: str, *, to: str = "mjcf", actuator=None, senso
     into: the path of the model, in MJCF, URDF or SDF.
     to: "mjcf", "urdf", "sdf", "drake" or "python", a module that steps MuJoCo with what MJCF cannot say.
     actuator: the joint's, where it has several. sensor: that of the contact force, for effects of the sensor.
+    nominal: the path of the rig file that was diagnosed: what the recordings add to its inertia becomes armature of the joint (MJCF).
     partial: leave out, with a warning, what the format cannot say.
 
     Raises InputError for a joint that the model does not have, an element that it has already and, unless `partial`, an effect that the
@@ -172,7 +260,7 @@ def export(improved, into, joint: str, *, to: str = "mjcf", actuator=None, senso
             with open(improved, "w", encoding="utf-8") as file:
                 file.write(text)
         paths = os.fspath(improved), os.fspath(into)
-        text, notes, left_out = _palpate.export(to, *paths, joint, actuator, sensor, partial)
+        text, notes, left_out = _palpate.export(to, *paths, joint, actuator, sensor, nominal and os.fspath(nominal), partial)
     for warning in [*notes, *(f"left out: {effect}" for effect in left_out)]:
         _warnings.warn(warning, stacklevel=2)
     return text

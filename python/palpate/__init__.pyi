@@ -1,5 +1,5 @@
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
@@ -38,7 +38,11 @@ class Diagnosis:
     rivals: list[dict[str, Any]]
     locations: list[dict[str, Any]]
     fit: dict[str, Any]
+    channels: list[dict[str, Any]]
+    nominal: list[dict[str, Any]]
+    correlations: list[dict[str, Any]]
     checked: list[str]
+    findings: list[dict[str, Any]]
     json: str
     html: str
     model: str
@@ -46,6 +50,19 @@ class Diagnosis:
     def __getattr__(self, name: str) -> Any: ...
     def as_dict(self) -> dict[str, Any]: ...
     def _repr_html_(self) -> str: ...
+
+class JointsDiagnosis(Mapping[str, Diagnosis]):
+    json: str
+    html: str
+    def __init__(self, json: str, html: str, joints: dict[str, Diagnosis]) -> None: ...
+    def __getitem__(self, joint: str) -> Diagnosis: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __len__(self) -> int: ...
+    def _repr_html_(self) -> str: ...
+
+class ContactLaw:
+    def __init__(self, rig: PathOrTables) -> None: ...
+    def force(self, time: float, position: float, velocity: float, acceleration: float = 0.0) -> float: ...
 
 def diagnose(
     recordings: Recording | Sequence[Recording],
@@ -57,6 +74,16 @@ def diagnose(
     seed: int = 1,
     progress: Callable[[str], object] | None = None,
 ) -> Diagnosis: ...
+def diagnose_joints(
+    recordings: Recording | Sequence[Recording],
+    rigs: Mapping[str, PathOrTables],
+    *,
+    simulation: Recording | Sequence[Recording] | None = None,
+    load: Mapping[str, ArrayLike | Sequence[ArrayLike]] | None = None,
+    effort: Mapping[str, ArrayLike | Sequence[ArrayLike]] | None = None,
+    seed: int = 1,
+    progress: Callable[[str], object] | None = None,
+) -> JointsDiagnosis: ...
 def read(recording: Recording, rig: PathOrTables) -> dict[str, np.ndarray]: ...
 def export(
     improved: Diagnosis | str | os.PathLike[str],
@@ -66,6 +93,7 @@ def export(
     to: Literal["mjcf", "urdf", "sdf", "drake", "python"] = "mjcf",
     actuator: str | None = None,
     sensor: str | None = None,
+    nominal: str | os.PathLike[str] | None = None,
     partial: bool = False,
 ) -> str: ...
 @dataclass(frozen=True)

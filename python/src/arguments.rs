@@ -39,6 +39,11 @@ pub fn recording(given: &Bound<'_, PyAny>, at: usize, rig: &Rig) -> PyResult<Rec
     read(&path, added, rig).map_err(input_error)
 }
 
+/// All of `given`, each as [`recording`].
+pub fn recordings(given: &[Bound<'_, PyAny>], rig: &Rig) -> PyResult<Vec<Recording>> {
+    given.iter().enumerate().map(|(at, one)| recording(one, at, rig)).collect()
+}
+
 fn read(path: &Path, added: Vec<Channel>, rig: &Rig) -> Result<Recording, InputError> {
     match added.is_empty() {
         true => Recording::read(path, rig),

@@ -2,6 +2,8 @@
 
 mod arguments;
 mod cancellable;
+mod contact_law;
+mod joints;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -13,14 +15,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use palpate_lab::diagnose::report::html;
-use palpate_lab::diagnose::{Diagnosis, diagnose as run_diagnosis};
+use palpate_lab::diagnose::{Diagnosis, Found, diagnose as run_diagnosis};
 use palpate_lab::error::InputError;
 use palpate_lab::export::{ExportArgs, Target, export as write_model};
 use palpate_lab::fleet::rig_folder::{ANSWER, RigFolder};
 use palpate_lab::fleet::source::{self, FleetRig};
 use palpate_lab::fleet::worker::Worker;
 use palpate_lab::own_program::{self, OwnProgram};
-use palpate_lab::recording::Recording;
 
 create_exception!(_palpate, NativeInputError, PyValueError, "Place, finding and expectation of an input at fault.");
 
@@ -50,16 +51,18 @@ fn diagnose(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let (rig, origin) = arguments::rig(rig)?;
-    let read = |all: &[Bound<'_, PyAny>]| -> PyResult<Vec<Recording>> {
-        all.iter().enumerate().map(|(at, one)| arguments::recording(one, at, &rig)).collect()
-    };
-    let (trials, simulation) = (read(&recordings)?, read(&simulation)?);
+    let (trials, simulation) = (arguments::recordings(&recordings, &rig)?, arguments::recordings(&simulation, &rig)?);
     cancellable::run(py, progress, move |say| {
         let found = run_diagnosis(&rig, &origin, &trials, &simulation, seed, say)?;
-        let mut page = Vec::new();
-        html::write(&found.answer, &found.pictures, &mut page)?;
-        Ok((json(&found.answer)?, String::from_utf8(page)?, found.improved.to_toml()))
+        answer(&found)
     })
+}
+
+/// What Python gets of a diagnosis.
+fn answer(found: &Found) -> anyhow::Result<Answer> {
+    let mut page = Vec::new();
+    html::write(&found.answer, &found.pictures, &mut page)?;
+    Ok((json(&found.answer)?, String::from_utf8(page)?, found.improved.to_toml()))
 }
 
 /// As `palpate diagnose --json` writes it.
@@ -94,6 +97,7 @@ fn read<'py>(
 
 /// The model's text, what the user has to know, and what was left out; see `palpate.export`. `to` is a target as the command spells it.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "as many as the Python function has, in its order")]
 fn export(
     to: &str,
     improved: PathBuf,
@@ -101,6 +105,7 @@ fn export(
     joint: String,
     actuator: Option<String>,
     sensor: Option<String>,
+    nominal: Option<PathBuf>,
     partial: bool,
 ) -> PyResult<(String, Vec<String>, Vec<String>)> {
     let names: Vec<String> = Target::value_variants()
@@ -108,7 +113,7 @@ fn export(
         .filter_map(|target| Some(target.to_possible_value()?.get_name().to_owned()))
         .collect();
     let to = Target::from_str(to, false).map_err(|_| input_error(InputError::new("to", to, names.join(", "))))?;
-    let args = ExportArgs { to, improved, into, joint, actuator, sensor, partial, out: None };
+    let args = ExportArgs { to, improved, into, joint, actuator, sensor, nominal, partial, out: None };
     let exported = write_model(&args).map_err(input_error)?;
     let left_out = exported.refused.iter().map(ToString::to_string).collect();
     Ok((exported.text, exported.notes, left_out))
@@ -158,8 +163,10 @@ fn command(py: Python<'_>, arguments: Vec<String>) -> u8 {
 #[pymodule]
 fn _palpate(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("NativeInputError", module.py().get_type::<NativeInputError>())?;
+    module.add_class::<contact_law::ContactLaw>()?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(diagnose, module)?)?;
+    module.add_function(wrap_pyfunction!(joints::diagnose_joints, module)?)?;
     module.add_function(wrap_pyfunction!(read, module)?)?;
     module.add_function(wrap_pyfunction!(export, module)?)?;
     module.add_function(wrap_pyfunction!(fleet, module)?)?;

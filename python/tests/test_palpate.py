@@ -95,6 +95,34 @@ def test_a_load_and_an_effort_are_added(folder):
     assert palpate.diagnose(bare, RIG, effort=trial(1)["effort_N"]).verdict
 
 
+def test_joints_are_those_of_the_command_to_the_byte(folder):
+    """Two joints of one recording: one with the load of 2 N known, one without."""
+    columns = '[columns]\neffort = "effort_N"\nload = "known_N"\n'
+    (folder / "one.toml").write_text(RIG_TEXT + columns)
+    for at in (1, 2):
+        table = np.column_stack([*trial(at).values(), np.full(3000, 2.0)])
+        np.savetxt(folder / f"arm-{at}.csv", table, delimiter=",", header="t_s,position_m,effort_N,known_N", comments="", fmt="%.17g")
+    files = [folder / "arm-1.csv", folder / "arm-2.csv"]
+    rigs = {"one": folder / "one.toml", "two": folder / "rig.toml"}
+    arm = palpate.diagnose_joints(files, rigs)
+    assert list(arm) == ["one", "two"] and len(arm) == 2
+    assert [physics.name for physics in arm["two"].physics] == ["gravity_load"] and not arm["one"].physics
+    joints = [word for name, rig in rigs.items() for word in ("--joint", f"{name}={rig}")]
+    told = command("diagnose-joints", *joints, *files, "--json", "-", "--report", folder / "arm.html")
+    assert told.returncode == 0, told.stderr
+    assert told.stdout == arm.json.encode() and (folder / "arm.html").read_bytes() == arm.html.encode()
+    # The load as arrays, by the joint's name.
+    given = palpate.diagnose_joints(
+        [trial(1), trial(2)], {"one": RIG, "two": RIG}, load={"one": [np.full(3000, 2.0)] * 2}
+    )
+    assert [len(joint.physics) for joint in given.values()] == [0, 1]
+    assert arm._repr_html_().startswith("<iframe srcdoc=")
+    with pytest.raises(palpate.InputError, match=r"load\['three'\].*one, two"):
+        palpate.diagnose_joints(files, rigs, load={"three": [np.zeros(3000)] * 2})
+    with pytest.raises(palpate.InputError, match=r"load\['one'\].*1 arrays.*2 in all"):
+        palpate.diagnose_joints(files, rigs, load={"one": [np.zeros(3000)]})
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -216,6 +244,9 @@ def test_an_error_of_progress_comes_through():
         palpate.diagnose(trial(1), RIG, progress=progress)
 
 
-def test_stubs_and_marker_are_installed():
+def test_stubs_and_marker_are_installed(diagnosis):
     home = pathlib.Path(palpate.__file__).parent
-    assert (home / "py.typed").exists() and (home / "__init__.pyi").exists()
+    assert (home / "py.typed").exists()
+    stubs = (home / "__init__.pyi").read_text()
+    missing = [key for key in [*diagnosis.as_dict(), *palpate.__all__] if key not in stubs]
+    assert not missing, f"not in the stubs: {missing}"

@@ -1,6 +1,6 @@
 //! An effect of the improved rig with its values by name, and in words.
 
-use crate::effects::{self, Resolved, interval_key};
+use crate::effects::{self, Place, Resolved, Stage, interval_key};
 use crate::error::InputError;
 use crate::rig::{self, Rig};
 
@@ -8,6 +8,10 @@ use crate::rig::{self, Rig};
 pub struct FoundEffect {
     /// "coulomb_friction".
     pub name: &'static str,
+    /// Contact, drive or sensor.
+    pub place: Place,
+    /// When it acts among others of its place.
+    pub stage: Stage,
     /// "symmetric"; the law's name.
     pub form: &'static str,
     /// By the parameter's name.
@@ -20,6 +24,11 @@ impl FoundEffect {
     /// The value of a parameter of its form; not a number for one that the form does not have.
     pub fn value(&self, parameter: &str) -> f64 {
         self.values.iter().find(|(name, _)| *name == parameter).map_or(f64::NAN, |(_, value)| *value)
+    }
+
+    /// Whether its form has that parameter.
+    pub fn form_has(&self, parameter: &str) -> bool {
+        self.values.iter().any(|(name, _)| *name == parameter)
     }
 }
 
@@ -48,6 +57,8 @@ fn found(rig: &Rig, resolved: &Resolved, table: &rig::Effect) -> FoundEffect {
     let parameters: Vec<String> = form.parameters.iter().zip(&resolved.values).map(word).collect();
     FoundEffect {
         name: spec.name,
+        place: spec.place,
+        stage: spec.stage,
         form: form.name,
         values,
         words: format!("{} ({}): {}", spec.name, form.name, parameters.join(", ")),

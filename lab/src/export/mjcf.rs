@@ -23,7 +23,7 @@ pub fn export(export: &Export<'_>, text: &str) -> Result<Exported, InputError> {
         refused: Vec::new(),
         notes: Vec::new(),
     };
-    writer.nominal();
+    writer.nominal()?;
     for effect in &export.effects {
         writer.effect(effect)?;
     }
@@ -63,9 +63,9 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The refitted viscous friction. The inertia is spread over the model's bodies and is left to the user.
-    fn nominal(&mut self) {
-        let Some(drive) = self.export.rig.drive else { return };
+    /// The refitted viscous friction, and the inertia where it is known what it was before.
+    fn nominal(&mut self) -> Result<(), InputError> {
+        let Some(drive) = self.export.rig.drive else { return Ok(()) };
         let unit = self.export.rig.coordinate;
         let before = self.model.joint_number("damping");
         let words = format!("damping {} {} (before: {})", short(drive.viscous), unit.damping_unit(), short(before));
@@ -75,11 +75,42 @@ impl Writer<'_> {
         let rest: Vec<&str> = damping.split_whitespace().skip(1).collect();
         let value = std::iter::once(drive.viscous.to_string()).chain(rest.into_iter().map(str::to_owned));
         self.changes.set_attribute(self.model.joint, "damping", &value.collect::<Vec<_>>().join(" "));
-        let moved = format!("{} {}", short(drive.inertia), unit.inertia_unit());
-        self.notes.push(format!(
-            "the recordings show an inertia of {moved} at joint {}; the model's bodies are left as they are",
-            self.model.name
+        // With a play or a link the armature is the motor's.
+        let has_link = self.export.effects.iter().any(|effect| effect.form_has("motor_share"));
+        match self.export.nominal.as_ref().and_then(|rig| rig.drive).filter(|_| !has_link) {
+            Some(before) => self.armature(drive.inertia, before.inertia),
+            None => {
+                let moved = format!("{} {}", short(drive.inertia), unit.inertia_unit());
+                self.notes.push(format!(
+                    "the recordings show an inertia of {moved} at joint {}; the model's bodies are left as they are (--nominal, with the \
+                     rig file that was diagnosed, makes armature of what the recordings add)",
+                    self.model.name
+                ));
+                Ok(())
+            }
+        }
+    }
+
+    /// What the recordings add to the inertia that the rig said. The bodies may be those of several joints and stay as they are.
+    fn armature(&mut self, fitted: f64, given: f64) -> Result<(), InputError> {
+        let before = self.model.joint_number("armature");
+        let after = before + fitted - given;
+        let unit = self.export.rig.coordinate.inertia_unit();
+        if after < 0.0 {
+            let found =
+                format!("armature {} {unit}, where the recordings take {} away", short(before), short(given - fitted));
+            let expected = "bodies that are lighter by it: without --nominal they are left as they are";
+            return Err(InputError::new(self.model.at(self.model.joint), found, expected));
+        }
+        self.note_at_joint(&format!(
+            "armature {} {unit} (before: {}): inertia {}, given {}",
+            short(after),
+            short(before),
+            short(fitted),
+            short(given)
         ));
+        self.changes.set_attribute(self.model.joint, "armature", &after.to_string());
+        Ok(())
     }
 
     fn effect(&mut self, effect: &FoundEffect) -> Result<(), InputError> {
