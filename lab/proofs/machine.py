@@ -18,10 +18,10 @@ class Machine:
 
     force: by position. friction: the most that it holds, by speed and contact force. command: what the drive makes of the commanded
     effort. contact: a law of time step, position and velocity, instead of the model's own contact. reading: what the sensor makes of
-    the force, an array at the rate of the steps. stepper: the class of an exported module.
+    the force, an array at the rate of the steps. module: an exported one.
     """
 
-    def __init__(self, xml, force=None, friction=None, command=None, contact=None, reading=None, stepper=None):
+    def __init__(self, xml, force=None, friction=None, command=None, contact=None, reading=None, module=None):
         self.model = mujoco.MjModel.from_xml_string(xml)
         self.data = mujoco.MjData(self.model)
         self.force, self.friction, self.command, self.contact, self.reading = force, friction, command, contact, reading
@@ -29,9 +29,9 @@ class Machine:
         self.pressed = 0.0
         self.stepper = None
         self.step = self.plain_step
-        if stepper:
+        if module:
             pressed = (lambda: self.data.sensordata[0]) if self.has_surface else None
-            self.stepper = stepper(self.model, self.data, pressed, "surface" if self.has_surface else None)
+            self.stepper = module.Stepper(self.model, self.data, pressed, "surface" if module.CONTACT else None)
             self.step = self.stepped
 
     def stepped(self):

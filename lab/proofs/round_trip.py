@@ -50,7 +50,7 @@ def round_trip(tool, folder, case):
         mjcf, module, left_out = tool.export(folder, "axis", "rig.toml", sensor="wrist" if case.columns == 4 else None)
     except RuntimeError as refusal:
         return case.name, names(diagnosis), before, "none", sensors, f"not exported: {refusal}"
-    after = f"{error(Machine(mjcf, stepper=module and module.Stepper)):.3f}"
+    after = f"{error(Machine(mjcf, module=module)):.3f}"
     return case.name, names(diagnosis), before, after, sensors, "; ".join([by(module), *left_out])
 
 

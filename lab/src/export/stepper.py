@@ -70,7 +70,7 @@ class Stepper:
         parts = [(JOINT, EFFECTS, CONTACT), *((part.JOINT, part.EFFECTS, part.CONTACT) for part in also)]
         self._model, self._data = model, data
         self.joints = {name: Joint(model, name, effects, law, given.get(name)) for name, effects, law in parts}
-        if surface is not None:
+        if surface is not None and any(joint.law is not None for joint in self.joints.values()):
             geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, surface)
             if geom < 0:
                 raise ValueError(f"the model has no geom {surface}")
