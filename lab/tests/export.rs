@@ -165,8 +165,13 @@ fn what_the_recordings_add_to_the_inertia_becomes_armature() {
     fs::write(&nominal, RIG.replace("mass_kg = 0.8", "mass_kg = 0.7")).expect("a file");
     let output = command.arg("--nominal").arg(&nominal).output().expect("palpate");
     let text = String::from_utf8(output.stdout).expect("text");
-    let armature: f64 =
-        text.split("armature=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("one").parse().expect("a number");
+    let armature: f64 = text
+        .split("armature=\"")
+        .nth(1)
+        .and_then(|rest| rest.split('"').next())
+        .expect("one")
+        .parse()
+        .expect("a number");
     assert!((armature - 0.1).abs() < 1e-12, "{armature}");
     assert!(text.contains("inertia 0.80000, given 0.70000") && output.stderr.is_empty(), "{text}");
     // Less than the armature that is there cannot be taken away.

@@ -181,3 +181,23 @@ def test_an_exported_urdf_is_one_to_mujoco(folder_of_test):
     model = mujoco.MjModel.from_xml_string(text)
     assert model.dof_frictionloss[0] == 0.45 and model.dof_damping[0] == 3.0
     assert list(model.jnt_actfrcrange[0]) == [-6.0, 6.0]
+
+
+def test_an_exported_model_is_one_to_drake(folder_of_test):
+    """Where Drake is installed, which the other tests do not need."""
+    drake = pytest.importorskip("pydrake.all")
+    (folder_of_test / "improved.toml").write_text(TABLES + '[[effect]]\nname = "effort_saturation"\nlimit_n = 6.0\n')
+    motor = '<transmission><type>transmission_interface/SimpleTransmission</type><joint name="axis">'
+    motor += '<hardwareInterface>EffortJointInterface</hardwareInterface></joint><actuator name="m"/></transmission>'
+    sdf = '<sdf version="1.9"><model name="m"><link name="base"/><link name="slide"/><joint name="axis" type="prismatic">'
+    sdf += "<parent>base</parent><child>slide</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"
+    for to, model in (("drake", URDF.replace("</robot>", motor + "</robot>")), ("sdf", sdf)):
+        suffix = "urdf" if to == "drake" else to
+        (folder_of_test / f"r.{suffix}").write_text(model)
+        text = palpate.export(folder_of_test / "improved.toml", folder_of_test / f"r.{suffix}", "axis", to=to)
+        plant = drake.MultibodyPlant(0.001)
+        drake.Parser(plant).AddModelsFromString(text, suffix)
+        plant.Finalize()
+        assert plant.GetJointByName("axis").default_damping() == 3.0
+        limits = [plant.get_joint_actuator(index).effort_limit() for index in plant.GetJointActuatorIndices()]
+        assert limits == [6.0]
