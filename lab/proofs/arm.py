@@ -16,9 +16,9 @@ from tool import by, names
 JOINTS = ("shoulder", "elbow")
 ARMATURE, DAMPING = (0.08, 0.02), (0.6, 0.15)
 KP, KD = np.array([1500.0, 400.0]), np.array([40.0, 8.0])
-# A 20 bit encoder on each joint.
-ENCODER_STEP = 2 * math.pi / 2**20
-SMOOTHING_HZ = 40.0
+# An encoder of 17 bits on each motor, behind a gear of 64.
+ENCODER_STEP = 2 * math.pi / 2**23
+SMOOTHING_HZ = 100.0
 
 ARM = f"""<mujoco model="arm">
   <compiler angle="radian"/>
@@ -92,7 +92,7 @@ def play(xml, trial, seed, friction=None, module=None):
 
 
 def with_loads(xml, rows):
-    """The rows with the load of each joint beside them."""
+    """The rows with the load of each joint beside them: its mean over the row, as the effort is held from row to row."""
     model = mujoco.MjModel.from_xml_string(xml)
     model.dof_armature[:], model.dof_damping[:] = 0.0, 0.0
     data = mujoco.MjData(model)
@@ -102,7 +102,8 @@ def with_loads(xml, rows):
         data.qpos[:], data.qvel[:], data.qacc[:] = q[row], v[row], a[row]
         mujoco.mj_inverse(model, data)
         loads[row] = data.qfrc_inverse
-    return np.column_stack([rows, loads])
+    means = np.vstack([(loads[1:] + loads[:-1]) / 2, loads[-1:]])
+    return np.column_stack([rows, means])
 
 
 def smoothed(positions, order):

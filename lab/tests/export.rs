@@ -159,6 +159,14 @@ fn a_contact_is_a_rig_file_within_the_stepper() {
 }
 
 #[test]
+fn a_limit_of_the_effort_less_a_load_is_none_of_the_actuator() {
+    let limit = "[[effect]]\nname = \"effort_saturation\"\nlimit_n = 6.0\n[columns]\nload = \"inverse_dynamics\"\n";
+    refuses("mjcf", MJCF, limit, &[], &["effort_saturation", "less the recorded load"]);
+    refuses("urdf", URDF, limit, &[], &["effort_saturation", "less the recorded load"]);
+    assert!(!exported("mjcf", MJCF, limit, &["--partial"]).contains("forcerange"));
+}
+
+#[test]
 fn what_the_recordings_add_to_the_inertia_becomes_armature() {
     let (folder, mut command) = export_as("mjcf", MJCF, COULOMB, &[]);
     let nominal = folder.path().join("rig.toml");
