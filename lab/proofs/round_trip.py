@@ -60,18 +60,47 @@ def main():
     parser.add_argument("--only", nargs="*", help="names of rows")
     parser.add_argument("--keep", type=pathlib.Path, help="a folder for the files of each case")
     parser.add_argument("--recordings", type=pathlib.Path, help="the folder of real recordings")
-    parser.add_argument("--write", type=pathlib.Path, help="a page that has the two marks: the tables are written between them")
+    parser.add_argument("--write", type=pathlib.Path, help="a page that has the two marks: rows between them are replaced by these")
+    parser.add_argument("--printed", type=pathlib.Path, nargs="*", help="what earlier runs printed, instead of a run")
     args = parser.parse_args()
-    tables = []
-    for line in lines(args):
-        print(line, flush=True)
-        tables.append(line)
+    if args.printed:
+        measured = [line for path in args.printed for line in path.read_text().splitlines()]
+    else:
+        measured = []
+        for line in lines(args):
+            print(line, flush=True)
+            measured.append(line)
     if args.write:
-        page = args.write.read_text()
-        head, _, tail = page.partition(BEGIN)
-        args.write.write_text(head + BEGIN + "\n\n" + "\n".join(tables) + "\n\n" + END + tail.partition(END)[2])
+        head, _, rest = args.write.read_text().partition(BEGIN)
+        before, _, tail = rest.partition(END)
+        rows = "\n".join(in_order(before.splitlines(), measured)).strip()
+        args.write.write_text(head + BEGIN + "\n\n" + rows + "\n\n" + END + tail)
 
 
+def in_order(before, measured):
+    """Both tables, a row that was measured in place of the one before, in the order of the cases."""
+    rows = {first_cell(line): line for line in [*before, *measured] if line.startswith("| ") and " | " in line}
+    first = [case.name for case in cases()] + [name for name in rows if name.startswith("arm, ")]
+    second = [case[0] for case in recorded_drives.cases(pathlib.Path())]
+    for heads, names_of_rows in ((HEAD, first), (RECORDED_HEAD, second)):
+        yield from heads
+        yield from (rows[name] for name in names_of_rows if name in rows)
+        yield ""
+
+
+def first_cell(line):
+    return line.split("|")[1].strip()
+
+
+HEAD = (
+    "| concealed | named | error before, N or N m | after | the sensors alone | exported by |",
+    "|---|---|---|---|---|---|",
+)
+RECORDED_HEAD = (
+    "| recording | named | force on the unused trial before, N or N m | after | with the published values | "
+    "the diagnosis's own residual (the sensors') | exported by |",
+    "|---|---|---|---|---|---|---|",
+)
 BEGIN, END = "<!-- written by lab/proofs/round_trip.py; not by hand -->", "<!-- end of what it wrote -->"
 
 
@@ -79,8 +108,7 @@ def lines(args):
     """The tables, as they come."""
     tool = Tool(args.palpate)
     wanted = lambda name: not args.only or name in args.only
-    yield "| concealed | named | error before, N or N m | after | the sensors alone | exported by |"
-    yield "|---|---|---|---|---|---|"
+    yield from HEAD
     for case in filter(lambda case: wanted(case.name), cases()):
         with folder_of(args, case.name) as folder:
             yield table_row(round_trip(tool, folder, case))
@@ -89,11 +117,7 @@ def lines(args):
             yield from map(table_row, arm.row(tool, folder))
     if args.recordings:
         yield ""
-        yield (
-            "| recording | named | force on the unused trial before, N or N m | after | with the published values | "
-            "the diagnosis's own residual (the sensors') | exported by |"
-        )
-        yield "|---|---|---|---|---|---|---|"
+        yield from RECORDED_HEAD
         for case in filter(lambda case: wanted(case[0]), recorded_drives.cases(args.recordings.resolve())):
             with folder_of(args, case[0]) as folder:
                 yield table_row(recorded_drives.row(tool, folder, case))

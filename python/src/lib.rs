@@ -97,7 +97,7 @@ fn read<'py>(
 
 /// The model's text, what the user has to know, and what was left out; see `palpate.export`. `to` is a target as the command spells it.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as many as the Python function has, in its order")]
+#[allow(clippy::too_many_arguments, reason = "as many as the Python function has, in its order")]
 fn export(
     to: &str,
     improved: PathBuf,
