@@ -26,6 +26,9 @@ class Machine:
         self.data = mujoco.MjData(self.model)
         self.force, self.friction, self.command, self.contact, self.reading = force, friction, command, contact, reading
         self.has_surface = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, "surface") >= 0
+        if contact:
+            surface = self.model.geom("surface").id
+            self.model.geom_contype[surface] = self.model.geom_conaffinity[surface] = 0
         self.pressed = 0.0
         self.stepper = None
         self.step = self.plain_step
