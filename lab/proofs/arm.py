@@ -55,7 +55,8 @@ def reference(trial):
         x = np.zeros(len(t))
         for frequency, amplitude in ((base[0], base[1]), (0.9, 0.2), (2.3, 0.05), (5.1, 0.012), (9.0, 0.004)):
             x += amplitude * np.sin(2 * np.pi * frequency * rng.uniform(0.9, 1.1) * t + rng.uniform(0, 6))
-        motion.append((x - x[0]) * np.minimum(t / 1.0, 1.0))
+        # Begun smoothly: a corner of the command is a blow that no filtered load follows.
+        motion.append((x - x[0]) * np.sin(np.pi / 2 * np.minimum(t, 1.0)) ** 2)
     return np.column_stack(motion)
 
 
