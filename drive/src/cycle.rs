@@ -30,7 +30,7 @@ pub enum Validity {
 /// A command to the interrupt; one is carried out per tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Order {
-    /// Zero the force sensor: the present force is defined as zero.
+    /// Zero the force sensor: the present force is defined as zero. Refused in contact, and beyond the calibration's `tare_limit`.
     Tare,
     /// Reset the estimator.
     Restart,
@@ -172,10 +172,7 @@ impl<'a> Cycle<'a> {
         let code = self.read_force(input, elapsed, faults);
         let believed = !faults.intersects(Faults::all().difference(Faults::HARMLESS.union(Faults::SAMPLE_LOST)));
         let counts = depth.zip(code).filter(|_| believed).map(|(depth, code)| Counts { depth, code })?;
-        if let Some(zero) = self.tare.as_mut().and_then(|tare| tare.take(counts.code)) {
-            self.tare = None;
-            self.set_zero(zero);
-        }
+        self.go_on_taring(counts.code);
         Some(counts)
     }
 
@@ -250,6 +247,19 @@ impl<'a> Cycle<'a> {
     fn restart(&mut self) {
         self.estimator.restart();
         self.counters.restart();
+    }
+
+    /// Takes a reading into the tare in progress, if there is one. A force of contact is no zero: a tare during which the tool touches is
+    /// refused, and with it one that was ordered while the sensors were silent and is carried out in contact.
+    fn go_on_taring(&mut self, code: i32) {
+        let Some(tare) = self.tare.as_mut() else { return };
+        if !self.stale && !self.last.flags.contains(Flags::NO_CONTACT) {
+            self.tare = None;
+            self.counters.refused_tare();
+        } else if let Some(zero) = tare.take(code) {
+            self.tare = None;
+            self.set_zero(zero);
+        }
     }
 
     fn set_zero(&mut self, zero: f32) {

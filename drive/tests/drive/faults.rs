@@ -1,5 +1,6 @@
 //! One fault after the other: what was fed, what the estimate says, how it comes back.
 
+use palpate::Flags;
 use palpate_drive::{Faults, Input, InputStatus, Order, Settings, Validity, ads8681, as5047p};
 
 use super::{CALIBRATION, assert_honest, dithered, with_cycle, words};
@@ -194,6 +195,30 @@ fn a_tare_moves_the_zero_by_the_mean_of_good_samples_and_no_further_than_it_may(
         }
         assert!((cycle.scale().zero - 250.0).abs() < 1.0, "8 N is more than a zero can be off");
         assert_eq!(counters.others()[3], 1);
+    });
+}
+
+#[test]
+fn a_tare_in_contact_is_refused_and_the_zero_stays() {
+    with_cycle(Settings::default(), Faults::empty(), |cycle, counters| {
+        // 300 N/m, to and fro within the surface: the force is up to some newtons, less than a tare may move the zero by.
+        (0..1_000).for_each(|k| assert_honest(&cycle.tick(dithered(k))));
+        cycle.order(Order::Tare);
+        let report = (1_000..1_400).map(|k| cycle.tick(dithered(k))).last().expect("a report");
+        assert_eq!((cycle.scale().zero, counters.others()[3]), (0.0, 1));
+        assert!(!report.estimate.flags.contains(Flags::NO_CONTACT), "the contact is still told: {report:?}");
+    });
+}
+
+#[test]
+fn a_tare_that_was_ordered_while_the_sensors_were_silent_is_refused_in_contact() {
+    with_cycle(Settings::default(), Faults::empty(), |cycle, counters| {
+        (0..1_000).for_each(|k| assert_honest(&cycle.tick(dithered(k))));
+        (0..500).for_each(|_| assert!(cycle.tick(Input::NOTHING).sample.is_none()));
+        cycle.order(Order::Tare);
+        (0..500).for_each(|_| assert!(cycle.tick(Input::NOTHING).sample.is_none()));
+        (1_000..1_400).for_each(|k| drop(cycle.tick(dithered(k))));
+        assert_eq!((cycle.scale().zero, counters.others()[3]), (0.0, 1));
     });
 }
 

@@ -1,4 +1,5 @@
-//! A tare, waited for: the drive takes two hundred good samples after the order, and may find the zero too far away.
+//! A tare, waited for: the drive takes two hundred good samples after the order, and refuses it in contact or where the zero
+//! is too far away.
 
 use std::time::{Duration, Instant};
 
@@ -20,7 +21,7 @@ const STANDSTILL: Duration = Duration::from_secs(10);
 /// Orders a tare, and waits until it is done.
 ///
 /// # Errors
-/// The port is gone, the zero would move further than the calibration lets it, or the sensor gives no good samples.
+/// The port is gone, the tool touches, the zero would move further than the calibration lets it, or the sensor gives no good samples.
 pub fn tare(client: &mut Client) -> Result<()> {
     let before = client.counters()?.others;
     client.demand(Command::Order(Order::Tare), "the tare")?;
@@ -30,7 +31,8 @@ pub fn tare(client: &mut Client) -> Result<()> {
         let [ticks, used, _, refused] = [0, 1, 2, 3].map(|at| now[at].wrapping_sub(before[at]));
         if refused > 0 {
             bail!(
-                "the drive refuses the tare: the force is further from the calibrated zero than `tare_limit` of its calibration"
+                "the drive refuses the tare: the tool is in contact, or the force is further from the calibrated zero than `tare_limit` \
+                 of its calibration. Move the tool clear of the surface and tare again"
             );
         }
         // The sample that completes it is counted in the same tick.
@@ -39,8 +41,8 @@ pub fn tare(client: &mut Client) -> Result<()> {
         }
         if ticks > MAX_TICKS || since.elapsed() > STANDSTILL {
             bail!(
-                "no tare: {used} good samples in {ticks} ticks, {TARE_SAMPLES} are needed. The order stands, and would be carried out in whatever \
-                 touches by then: mend the sensors, and reset the drive or tare again with nothing touching"
+                "no tare: {used} good samples in {ticks} ticks, {TARE_SAMPLES} are needed. The order stands until they \
+                 come: mend the sensors"
             );
         }
     }
