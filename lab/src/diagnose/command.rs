@@ -14,6 +14,7 @@ use crate::diagnose::experiment::Experiment;
 use crate::diagnose::report::diagnosis::{Diagnosis, Run};
 use crate::diagnose::report::html;
 use crate::diagnose::report::model_file::model_file;
+use crate::diagnose::report::recorded_motion::runnable;
 use crate::error::{InputError, UsageError};
 use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
@@ -86,7 +87,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     found.pictures.run = Some(run_record(args)?);
     bar.finish_and_clear();
     if let Some(file) = model_place {
-        commit(file, model(args, &rig, &found)?.as_bytes())?;
+        commit(file, model(args, &rig, &found, &trials)?.as_bytes())?;
     }
     if let Some(mut file) = page {
         html::write(&found.answer, &found.pictures, &mut file).map_err(|error| file.fault(&error))?;
@@ -102,7 +103,12 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     }
     print(&found.answer, &text, args.json.as_deref().is_some_and(|path| path.as_os_str() == "-"))?;
     if args.experiment.is_some() && !is_designed {
-        eprintln!("note: no alternative is left that a motion would tell: no experiment is written");
+        let why = if found.answer.alternatives.is_empty() {
+            "no alternative is left to be told from the answer"
+        } else {
+            "no motion within what was recorded would tell the alternatives apart; what would is said above"
+        };
+        eprintln!("note: no experiment is written: {why}");
     }
     let experiment = args.experiment.as_ref().filter(|_| is_designed);
     for path in [args.json.as_ref(), args.report.as_ref(), args.model.as_ref(), experiment].into_iter().flatten() {
@@ -114,11 +120,12 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
 }
 
 /// The text of the improved rig file.
-fn model(args: &DiagnoseArgs, rig: &Rig, found: &Found) -> Result<String> {
+fn model(args: &DiagnoseArgs, rig: &Rig, found: &Found, recorded: &[Recording]) -> Result<String> {
     let text = std::fs::read_to_string(&args.rig).with_context(|| format!("{}: cannot be read", args.rig.display()))?;
     let trials: Vec<String> = args.trials.iter().map(|path| file_name(path)).collect();
     let source = trials.join(", ");
-    model_file(&text, rig, &found.improved, &found.answer.nominal, &source)
+    let improved = recorded.first().map_or_else(|| found.improved.clone(), |one| runnable(rig, &found.improved, one));
+    model_file(&text, rig, &improved, &found.answer.nominal, &source)
         .with_context(|| format!("{}: has changed and is no rig file any more", args.rig.display()))
 }
 
@@ -231,6 +238,9 @@ fn console_text(answer: &Diagnosis) -> String {
             let (number, unit) = (quantity::plain(value.value, &value.unit), &value.unit);
             if low == high {
                 return format!("    {} = {number} (chosen, not fitted)", value.name);
+            }
+            if !(low.is_finite() && high.is_finite()) {
+                return format!("    {} = {number} (not bounded by these recordings)", value.name);
             }
             format!("    {} = {number} (95 %: {})", value.name, quantity::between(low, high, unit))
         }));

@@ -12,6 +12,7 @@ mod drive_residual;
 pub mod html;
 pub mod merge;
 pub mod model_file;
+pub mod recorded_motion;
 mod residual_map;
 pub mod summary;
 mod traversals;

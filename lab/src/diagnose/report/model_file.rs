@@ -23,7 +23,8 @@ pub fn model_file(
         for (key, value) in table.iter().filter_map(|(key, item)| Some((key, item.as_value()?))) {
             let old = before.get(name).and_then(|table| table.get(key));
             if old.and_then(Item::as_value).is_none_or(|old| !is_same(old, value)) {
-                put(&mut document, name, key, value, nominal);
+                let is_new_table = before.get(name).is_none() || name == "simulation";
+                put(&mut document, name, key, value, if is_new_table { None } else { Some(nominal) });
             }
         }
     }
@@ -46,10 +47,22 @@ fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| Some(value.as_integer()? as f64))
 }
 
-/// Puts a value into its table, with its interval and what stood there behind it.
-fn put(document: &mut DocumentMut, table: &str, key: &str, value: &Value, nominal: &[Nominal]) {
-    let at = document.entry(table).or_insert_with(|| Item::Table(Table::new()));
+/// Above a table that the given file does not have.
+const TO_RUN: &str = "\n# Not in the file that was diagnosed: a motion between the ends of the recorded one, so that `palpate simulate` runs this.\n";
+
+/// Puts a value into its table, with its interval among `fitted` and what stood there behind it; a value that was not fitted as it is.
+fn put(document: &mut DocumentMut, table: &str, key: &str, value: &Value, fitted: Option<&[Nominal]>) {
+    let made = || {
+        let mut table = Table::new();
+        table.decor_mut().set_prefix(TO_RUN);
+        Item::Table(table)
+    };
+    let at = document.entry(table).or_insert_with(made);
     let Some(at) = at.as_table_like_mut() else { return };
+    let Some(nominal) = fitted else {
+        at.insert(key, Item::Value(rounded(value).decorated(" ", "")));
+        return;
+    };
     let old = at.get(key).and_then(Item::as_value);
     let stood = old.map_or_else(String::new, |old| format!("; before: {}", old.clone().decorated("", "")));
     let kept = old.and_then(|old| old.decor().suffix()?.as_str()).unwrap_or_default().trim().to_owned();
