@@ -25,7 +25,7 @@
 
   // ---- pictures
 
-  const DASHES = { given: [6, 4], learned: [2, 3] };
+  const DASHES = { given: [6, 4], learned: [10, 3, 2, 3] };
   const line = (key, name, values) => ({ name, values, stroke: css(LOOK[key]), dash: DASHES[key] ?? [], best: key === "improved" || key === "learned" });
 
   function model(trace, hidden) {

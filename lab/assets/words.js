@@ -8,7 +8,7 @@ const words = (() => {
     const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
     for (const [name, value] of Object.entries({ width: 22, height: 8, "aria-hidden": "true" })) svg.setAttribute(name, value);
-    const look = { x1: 0, x2: 22, y1: 4, y2: 4, stroke, "stroke-width": 2.5, "stroke-dasharray": dots ? "0.1 5" : dash?.length ? dash.join(" ") : "none", "stroke-linecap": dots ? "round" : "butt" };
+    const look = { x1: 0, x2: 22, y1: 4, y2: 4, stroke, "stroke-width": dots ? 5 : 2.5, "stroke-dasharray": dots ? "0.1 11" : dash?.length ? dash.join(" ") : "none", "stroke-linecap": dots ? "round" : "butt" };
     for (const [name, value] of Object.entries(look)) line.setAttribute(name, value);
     svg.append(line);
     return svg;

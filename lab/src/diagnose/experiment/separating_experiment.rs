@@ -2,6 +2,7 @@
 
 use crate::diagnose::term::Term;
 use crate::effects::Place;
+use crate::page::effect_name::effect_name;
 
 /// Two effects and the motion, or the sensor, that separates them.
 struct SeparatingExperiment {
@@ -181,7 +182,8 @@ pub fn separated_by(answer: &Term, rival: &Term) -> String {
             one.excited_by
         );
     }
-    format!("What shows {} is {}; what shows {} is {}.", one.name, one.excited_by, other.name, other.excited_by)
+    let [first, second] = [one.name, other.name].map(effect_name);
+    format!("What shows {first}: {}. What shows {second}: {}.", one.excited_by, other.excited_by)
 }
 
 /// A gain beside an effect of the contact.

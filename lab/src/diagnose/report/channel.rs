@@ -55,6 +55,20 @@ impl Residuals {
     }
 }
 
+/// Width of an interval over its value from which it bounds nothing: no parameter of a rig is open over six decades.
+const OPEN_WIDTH: f64 = 1e6;
+
+/// The ends of a 95 % interval as they are told: infinite where it bounds nothing.
+pub(super) fn told(value: f64, [low, high]: [f64; 2]) -> [f64; 2] {
+    let is_open = value != 0.0 && high - low > OPEN_WIDTH * value.abs();
+    if is_open { [f64::NEG_INFINITY, f64::INFINITY] } else { [low, high] }
+}
+
+/// The same of all values of a fit.
+pub(super) fn all_told(values: &[f64], intervals: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    values.iter().zip(intervals).map(|(value, ends)| told(*value, *ends)).collect()
+}
+
 /// The parameters of a law with their values and 95 % intervals.
 pub(super) fn parameters(
     effect: &dyn Effect,
@@ -68,7 +82,7 @@ pub(super) fn parameters(
         name: parameter.name.to_owned(),
         value: *value,
         unit: coordinate.pick(parameter.unit).to_owned(),
-        ci95: *ends,
+        ci95: told(*value, *ends),
     })
     .collect()
 }
@@ -103,6 +117,13 @@ pub(super) fn alternative(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_interval_of_twenty_decades_is_open() {
+        assert_eq!(told(9.4e-9, [0.0, 4.9e13]), [f64::NEG_INFINITY, f64::INFINITY]);
+        assert_eq!(told(-0.02, [-0.2, 0.16]), [-0.2, 0.16]);
+        assert_eq!(told(0.0, [-1.0, 1.0]), [-1.0, 1.0]);
+    }
 
     #[test]
     fn one_measure_serves_the_answer_and_what_is_compared_with_it() {

@@ -23,9 +23,16 @@ fn by_learned(outcome: &Outcome, trial: usize) -> Vec<f32> {
     outcome.learned.as_ref().map_or_else(Vec::new, |curve| by(outcome, &curve.residual, trial))
 }
 
+/// Depth below the fitted surface; the position itself where the spring pulls as well, which has no surface.
 fn depth(outcome: &Outcome, trial: usize) -> Vec<f32> {
-    let surface = outcome.chosen.model.surface(&outcome.chosen.values, trial);
+    let model = &outcome.chosen.model;
+    let surface = if model.bilateral { 0.0 } else { model.surface(&outcome.chosen.values, trial) };
     outcome.trials[trial].position.iter().map(|position| (position - surface) as f32).collect()
+}
+
+/// What [`depth`] is called.
+pub(super) fn depth_name(outcome: &Outcome) -> &'static str {
+    if outcome.chosen.model.bilateral { "position" } else { "depth" }
 }
 
 /// One trace a trial.
@@ -51,34 +58,63 @@ pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
     each.collect()
 }
 
-/// Force over depth, over the pass around the stretch `shown` of a trial; over the first trial where no stretch stands out.
-pub(super) fn force_over_depth(
+/// Effects that show as time goes by, whatever the depth.
+const BY_TIME: [&str; 7] =
+    ["stress_relaxation", "force_drift", "environment_mass", "tool_inertia", "channel_delay", "force_lag", "mains_hum"];
+
+/// Force over depth, and before it, where the first effect of the answer is one of time, force over time: over the pass around the stretch
+/// `shown` of a trial, or over the first trial where no stretch stands out.
+pub(super) fn evidence(
     outcome: &Outcome,
+    first_effect: Option<&str>,
     shown: Option<(usize, [f64; 2])>,
     coordinate: Coordinate,
-) -> Option<StatePlot> {
+) -> Vec<StatePlot> {
+    let Some(over_depth) = force_over_depth(outcome, shown, coordinate) else { return Vec::new() };
+    let is_by_time = first_effect.is_some_and(|name| BY_TIME.contains(&name));
+    let over_time = is_by_time.then(|| force_over_time(outcome, &over_depth)).flatten();
+    over_time.into_iter().chain([over_depth]).collect()
+}
+
+/// The rows of `over_depth`, over time.
+fn force_over_time(outcome: &Outcome, over_depth: &StatePlot) -> Option<StatePlot> {
+    let time = &outcome.trials.iter().find(|trial| trial.name == over_depth.trial)?.time;
+    let first = time.partition_point(|time| *time < over_depth.drawn_s[0]);
+    let rows = time.get(first..first + over_depth.state.len())?;
+    let state = rows.iter().map(|time| *time as f32).collect();
+    Some(StatePlot { along: "time", unit: "s", state, ..over_depth.clone() })
+}
+
+fn force_over_depth(outcome: &Outcome, shown: Option<(usize, [f64; 2])>, coordinate: Coordinate) -> Option<StatePlot> {
     let first = outcome.trials.first()?;
     let (trial, stretch_s) = shown.unwrap_or((0, [0.0, first.time.last().copied()?]));
     let depth = depth(outcome, trial);
     let time = &outcome.trials[trial].time;
     let rows = pass(time, &depth, stretch_s, outcome.chosen.model.bilateral);
-    let touching = (rows.start..rows.end).find(|row| time[*row] >= stretch_s[0] && depth[*row] > 0.0);
+    let is_touching = |row: &usize| outcome.chosen.model.bilateral || depth[*row] > 0.0;
+    let touching = (rows.start..rows.end).find(|row| time[*row] >= stretch_s[0] && is_touching(row));
     let rows = traversals::limited(&depth, rows.clone(), touching.unwrap_or(rows.start));
     let of = |column: Vec<f32>| column.get(rows.clone()).map(<[f32]>::to_vec).unwrap_or_default();
+    // A row that does not count was not simulated: a gap, not a line through the measurement.
+    let weights = &outcome.weights[trial];
+    let simulated = |mut column: Vec<f32>| {
+        column.iter_mut().zip(weights).filter(|(_, weight)| **weight <= 0.0).for_each(|(force, _)| *force = f32::NAN);
+        of(column)
+    };
     Some(StatePlot {
         channel: CHANNEL,
         trial: outcome.trials[trial].name.clone(),
         stretch_s,
         drawn_s: [*time.get(rows.start)?, *time.get(rows.end - 1)?],
-        along: "depth",
+        along: depth_name(outcome),
         unit: coordinate.position_unit(),
         ordinate: if coordinate == Coordinate::Rotary { "torque" } else { "force" },
         ordinate_unit: coordinate.force_unit(),
         measured: of(outcome.trials[trial].force.iter().map(|force| *force as f32).collect()),
-        as_given: of(by(outcome, &outcome.residuals[0], trial)),
-        refitted: of(by(outcome, &outcome.residuals[1], trial)),
-        improved: of(by(outcome, &outcome.residuals[2], trial)),
-        learned: of(by_learned(outcome, trial)),
+        as_given: simulated(by(outcome, &outcome.residuals[0], trial)),
+        refitted: simulated(by(outcome, &outcome.residuals[1], trial)),
+        improved: simulated(by(outcome, &outcome.residuals[2], trial)),
+        learned: simulated(by_learned(outcome, trial)),
         state: of(depth),
     })
 }

@@ -64,11 +64,12 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
         findings: findings(outcome),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
+    let first_effect = diagnosis.physics.first().map(|physics| physics.name.as_str());
     let plots = PlotData {
         rig: rig.name.clone(),
         position_unit: coordinate.position_unit(),
         force_unit: coordinate.force_unit(),
-        evidence: contact_plot::force_over_depth(outcome, shown, coordinate).into_iter().collect(),
+        evidence: contact_plot::evidence(outcome, first_effect, shown, coordinate),
         traces: contact_plot::traces(outcome),
         maps: residual.maps(),
         experiment: None,
@@ -106,6 +107,7 @@ pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
         Some(curve) => Some(curve.intervals(&outcome.intervals)),
         None => (!outcome.named.is_empty()).then(|| outcome.intervals.clone()),
     };
+    let ends = ends.map(|ends| channel::all_told(&fit.values, &ends));
     let first = fit.model.nominal_count();
     let mut rig = with_law(given, &fit.model.terms, &fit.values, first, outcome.trials.len(), ends.as_deref());
     if outcome.verdict == Verdict::NoMismatch {
@@ -159,7 +161,9 @@ fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, loc
     let rest = is_left.then(|| {
         let mut rest = unknown(locations, !named.is_empty());
         if let Some(curve) = &outcome.learned {
-            let [_, _, without] = residuals.of_laws;
+            // Where nothing is named the reader knows refitted values alone.
+            let [_, refitted, improved] = residuals.of_laws;
+            let without = if named.is_empty() { refitted } else { improved };
             rest.evidence.held_out_gain = residuals.share_of(without, rms(&data(outcome), &curve.residual));
             rest.statement.push_str(&learned_words(curve, outcome, rest.evidence.held_out_gain, coordinate));
             LEARNED.spec().forms[LEARNED_FORM].equation.clone_into(&mut rest.equation);
@@ -239,7 +243,7 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         unit: unit.to_owned(),
         given,
         fitted: outcome.chosen.values[at],
-        ci95: outcome.intervals[at],
+        ci95: channel::told(outcome.chosen.values[at], outcome.intervals[at]),
     };
     vec![
         row("stiffness", c.stiffness_unit(), contact.stiffness, index::STIFFNESS),

@@ -1,5 +1,6 @@
 //! The residual of the contact's channel, row by row.
 
+use super::contact_plot::depth_name;
 use super::contact_report::CHANNEL;
 use super::residual_map::{ChannelResidual, ResidualRow};
 use crate::diagnose::contact::outcome::Outcome;
@@ -14,7 +15,7 @@ pub(super) fn contact_residual(outcome: &Outcome, coordinate: Coordinate) -> Cha
     ChannelResidual {
         channel: CHANNEL,
         coordinate,
-        position_name: "depth",
+        position_name: depth_name(outcome),
         trials: outcome.trials.iter().map(|trial| trial.name.as_str()).collect(),
         rows: rows(outcome),
         columns: [before(outcome), &outcome.residuals[2]],
@@ -40,7 +41,7 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
             rows.push(ResidualRow {
                 trial: number,
                 time_s: trial.time[row],
-                position: depth,
+                position: if model.bilateral { trial.position[row] } else { depth },
                 velocity,
                 phase: match Phase::of(depth, velocity, scales.depth, scales.speed, model.bilateral) {
                     // What still pulls has not let go, and what already pushes or pulls has been touched.

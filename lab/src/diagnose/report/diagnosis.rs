@@ -200,7 +200,7 @@ pub struct StatePlot {
     pub stretch_s: [f64; 2],
     /// The stretch that is drawn: of a contact the whole pass around `stretch_s`.
     pub drawn_s: [f64; 2],
-    /// "depth", "speed" or "position".
+    /// "depth", "speed", "position" or "time".
     pub along: &'static str,
     /// Its unit.
     pub unit: &'static str,

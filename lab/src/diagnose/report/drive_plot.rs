@@ -1,11 +1,12 @@
 //! What the page draws of a drive: effort over time, and what of it is friction and load over speed or position.
 
 use super::diagnosis::{StatePlot, Trace};
-use super::drive_report::CHANNEL;
+use super::drive_report::{CHANNEL, found};
 use super::drive_residual::velocity;
 use super::traversals;
 use crate::diagnose::drive::input::Inputs;
 use crate::diagnose::drive::law::DriveLaw;
+use crate::diagnose::drive::missing_force::missing_force;
 use crate::diagnose::drive::model::index;
 use crate::diagnose::drive::outcome::Outcome;
 use crate::rig::Coordinate;
@@ -43,8 +44,9 @@ pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
 
 /// The effort less the inertia's part, over the speed, of the trial that `shown` names; for an effect of the position, over that.
 ///
-/// What is left to friction and load is, by the refitted law, what viscous friction takes less what is missing beside it; what another
-/// law gives of it is that and what it misses together. Smoothed like the missing force.
+/// The inertia is the answer's: of refitted values without the missing physics it may be anything. What is left to friction and load is what
+/// that inertia alone would miss, turned about; what a law gives of it is that and what the law misses together. Smoothed like the missing
+/// force.
 pub(super) fn friction(
     outcome: &Outcome,
     first_effect: Option<&str>,
@@ -58,12 +60,15 @@ pub(super) fn friction(
     let trial = outcome.trials.get(number)?;
     let by_position = first_effect.is_some_and(|name| BY_POSITION.contains(&name));
     let velocities: Vec<f64> = (0..trial.len()).map(|row| velocity(trial, row)).collect();
-    let viscous = outcome.nominal.values[index::VISCOUS];
+    let beside_inertia = beside_inertia(outcome, number);
     let [given, refitted, improved] = [0, 1, 2].map(|of| &outcome.missing[of][number]);
-    let measured = |row: usize| viscous * velocities[row] - refitted[row];
+    let measured = |row: usize| beside_inertia[row];
     let state: Vec<f32> = if by_position { &trial.position } else { &velocities }.iter().map(|x| *x as f32).collect();
     let first = trial.time.partition_point(|time| time - trial.time[0] < stretch_s[0]);
-    let rows = traversals::limited(&state, 0..trial.len(), first);
+    let rows = match ripple_pitch(outcome).filter(|_| first_effect == Some("cogging")) {
+        Some(pitch) => a_few_pitches(&trial.position, first, pitch),
+        None => traversals::limited(&state, 0..trial.len(), first),
+    };
     let time = |row: usize| trial.time.get(row).map_or(0.0, |time| time - trial.time[0]);
     let column = |value: &dyn Fn(usize) -> f64| rows.clone().map(|row| value(row) as f32).collect::<Vec<f32>>();
     Some(StatePlot {
@@ -82,4 +87,52 @@ pub(super) fn friction(
         improved: column(&|row| measured(row) + improved[row]),
         learned: Vec::new(),
     })
+}
+
+/// Pitches of a ripple that a picture can show.
+const MOST_PITCHES: f64 = 6.0;
+
+/// The pitch of the cogging that the answer names.
+fn ripple_pitch(outcome: &Outcome) -> Option<f64> {
+    let cogging = found(outcome).into_iter().find(|effect| effect.name() == "cogging")?;
+    let names = cogging.effect.spec().forms[cogging.form].parameters.iter().map(|parameter| parameter.name);
+    names.zip(&cogging.values).find(|(name, _)| *name == "pitch").map(|(_, pitch)| pitch.abs())
+}
+
+/// The rows from `first` on that stay within a few pitches of where it stands.
+fn a_few_pitches(position: &[f64], first: usize, pitch: f64) -> std::ops::Range<usize> {
+    let first = first.min(position.len().saturating_sub(2));
+    let stays = |at: &&f64| (**at - position[first]).abs() <= MOST_PITCHES * pitch;
+    first..first + position[first..].iter().take_while(stays).count()
+}
+
+/// Effort less the inertia's part along a trial, smoothed as every law's missing force is.
+fn beside_inertia(outcome: &Outcome, trial: usize) -> Vec<f64> {
+    let (nominal, chosen) = (&outcome.nominal, &outcome.chosen);
+    let common =
+        nominal.noise.with_crossing(outcome.band_hz, nominal.model.scales.period_s, nominal.values[index::INERTIA]);
+    let whole = chosen.model.law(&chosen.values);
+    let bare = DriveLaw {
+        effort_lag_s: whole.effort_lag_s,
+        effort_limit: whole.effort_limit,
+        force_gain_error: whole.force_gain_error,
+        force_delay_s: whole.force_delay_s,
+        tool_inertia: whole.tool_inertia,
+        ..DriveLaw::nominal(whole.inertia, 0.0, whole.effort_delay_s)
+    };
+    missing_force(&outcome.trials[trial], &bare, &common, &common).into_iter().map(|missing| -missing).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ripple_is_drawn_over_a_few_of_its_pitches() {
+        let position: Vec<f64> = (0..1000).map(|row| 0.01 * f64::from(row)).collect();
+        // Six pitches of 0.1 are sixty rows beside the first.
+        let rows = a_few_pitches(&position, 100, 0.1);
+        assert!(rows.start == 100 && (160..=162).contains(&rows.end), "{rows:?}");
+        assert_eq!(a_few_pitches(&position, 5000, 0.1), 998..1000);
+    }
 }

@@ -137,7 +137,8 @@ pub fn found(outcome: &Outcome) -> Vec<NamedEffect> {
 /// The table of a found effect in a rig file.
 #[must_use]
 pub fn table(found: &NamedEffect, coordinate: Coordinate) -> crate::rig::Effect {
-    let ends: Vec<(f64, f64)> = found.intervals.iter().map(|ends| (ends[0], ends[1])).collect();
+    let ends = channel::all_told(&found.values, &found.intervals);
+    let ends: Vec<(f64, f64)> = ends.iter().map(|ends| (ends[0], ends[1])).collect();
     effects::to_table(found.effect, found.form, coordinate, &found.values, Some(&ends))
 }
 
@@ -220,7 +221,7 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         unit: unit.to_owned(),
         given,
         fitted: values[at],
-        ci95: ends[at],
+        ci95: channel::told(values[at], ends[at]),
     };
     vec![
         row(inertia, c.inertia_unit(), drive.inertia, index::INERTIA),

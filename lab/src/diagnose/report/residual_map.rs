@@ -73,6 +73,12 @@ pub(super) struct ChannelResidual<'a> {
     pub(super) longest_s: f64,
 }
 
+/// Both ends, and one number where nobody would tell them apart: at a hold the tool does not move.
+fn span(low: f64, high: f64, unit: &str) -> String {
+    let is_one = high - low < 1e-3 * low.abs().max(high.abs());
+    if is_one { quantity::plain(0.5 * (low + high), unit) } else { quantity::between(low, high, unit) }
+}
+
 impl ChannelResidual<'_> {
     /// The stretches that hold most of the mismatch: share and states are those of the very rows that are named.
     pub(super) fn locations(&self) -> Vec<Location> {
@@ -105,7 +111,7 @@ impl ChannelResidual<'_> {
             end_s: last.time_s,
             phase: first.phase,
             share,
-            states: format!("x {}, |v| {}", quantity::between(low, high, metre), quantity::between(slow, fast, speed)),
+            states: format!("x {}, |v| {}", span(low, high, metre), span(slow, fast, speed)),
         })
     }
 

@@ -9,6 +9,9 @@ use crate::rig::Coordinate;
 /// Residual over the sensors' own that is still called theirs: their noise is known to some 15 %.
 pub(super) const MOST_OVER_NOISE: f64 = 1.15;
 
+/// The same from which the two figures differ to the eye.
+const ABOUT_NOISE: f64 = 1.03;
+
 /// Share of a mismatch from which a place holds most of it.
 pub const MAJORITY_SHARE: f64 = 0.5;
 
@@ -47,9 +50,8 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 String::new(),
                 |location| {
                     format!(
-                        " {} of it lies in the {}{}.",
+                        " {} of it lies in one stretch{}.",
                         quantity::percent(100.0 * location.share),
-                        location.channel,
                         during(location)
                     )
                 },
@@ -64,7 +66,8 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
             let rest = if answer.verdict == Verdict::PartlyExplained {
                 format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")
             } else if is_noise(fit) {
-                format!(" That is what the sensors leave ({expected_noise}).")
+                let about = if fit.improved > ABOUT_NOISE * fit.noise_floor { "about " } else { "" };
+                format!(" That is {about}what the sensors leave ({expected_noise}).")
             } else {
                 format!(" The sensors alone would leave {expected_noise}.")
             };
@@ -79,8 +82,17 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 format!(" These data do not rule out {}.", all.join(" or "))
             };
             let pronoun = if names.len() == 1 { "it" } else { "them" };
+            // What is missing was fitted into the values, which then do worse elsewhere than those of the file.
+            let given = if fit.as_given < fit.refitted {
+                format!(
+                    " (refitted values without {pronoun}; those of the rig file leave {})",
+                    quantity::rounded(fit.as_given, unit, 3)
+                )
+            } else {
+                String::new()
+            };
             format!(
-                "The simulation leaves out {}: with {pronoun} the residual {lacks} falls from {before} to {after} on data that no fit saw.{rest}{rivals}",
+                "The simulation leaves out {}: with {pronoun} the residual {lacks} falls from {before}{given} to {after} on data that no fit saw.{rest}{rivals}",
                 listed(&names)
             )
         }

@@ -85,7 +85,8 @@ fn describe(trial: &Trial<'_>, answer: &Diagnosis, pictures: &PlotData) -> Descr
             .map(|place| DescribedPlace { channel: place.channel, start: place.start_s, end: place.end_s })
             .collect(),
         opens: opens(trial, answer, pictures),
-        touches: trial.traces.iter().any(|(_, trace)| trace.channel == "force"),
+        touches: trial.traces.iter().any(|(_, trace)| trace.channel == "force")
+            && !pictures.evidence.iter().any(|plot| plot.channel == "force" && plot.along == "position"),
     }
 }
 

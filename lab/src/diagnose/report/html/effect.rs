@@ -29,7 +29,7 @@ fn card(physics: &Physics, only: bool) -> Markup {
                 span.mark { (acts_in(physics.acts_in)) }
             }
             p.statement { (physics.statement) }
-            @if !physics.equation.is_empty() { p.equation { (physics.equation) } }
+            @if !physics.equation.is_empty() { p.equation { (physics.equation.replace("<=", "≤").replace(">=", "≥")) } }
             @if !physics.parameters.is_empty() {
                 dl.values { @for value in &physics.parameters { (parameter(&physics.name, value)) } }
                 p.fine { "± and ranges span 95 %, widened for the residual that remains and for the disagreement between halves of the recordings." }

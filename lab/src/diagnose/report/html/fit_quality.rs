@@ -117,6 +117,9 @@ fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
         } @else {
             "Refitted values leave " strong { (left) } " in the " (name) ", which is no sign of missing physics."
         }
+        @if goodness.as_given < goodness.refitted && !is_within_noise(goodness) {
+            " On rows that no fit saw, refitted values leave more than those of the rig file: without what is missing, each half of the recordings teaches values that do not suit the other."
+        }
         @if let Some(rest) = goodness.learned {
             " A curve that was learned from the recordings, and has no name, leaves " strong { (multiple(rest / goodness.noise_floor)) } "."
         }

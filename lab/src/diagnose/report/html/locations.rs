@@ -1,7 +1,7 @@
 //! Where simulation and recordings differ.
 
 use super::super::diagnosis::{BinnedResidual, Diagnosis, Location, PlotData};
-use super::wording::{channel, heading, location, share};
+use super::wording::{channel, heading, list, location, share};
 use super::{binned_residual, names_physics};
 use maud::{Markup, html};
 
@@ -19,13 +19,24 @@ pub(super) fn section(answer: &Diagnosis, pictures: &PlotData) -> Markup {
             (locations(answer))
             @if pictures.maps.iter().any(|map| !map.labels.is_empty()) && !answer.locations.is_empty() {
                 details.along {
-                    summary { "By phase, depth, speed, time and frequency" }
+                    summary { "By " (list(&quantities(pictures))) }
                     (explanation(improved))
                     @for name in CHANNELS { (maps(pictures, name, improved)) }
                 }
             }
         }
     }
+}
+
+/// What the pictures go along, each once.
+fn quantities(pictures: &PlotData) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for map in pictures.maps.iter().filter(|map| !map.labels.is_empty()) {
+        if !names.iter().any(|name| name == map.along) {
+            names.push(map.along.to_owned());
+        }
+    }
+    names
 }
 
 fn maps(pictures: &PlotData, name: &str, improved: bool) -> Markup {

@@ -4,7 +4,7 @@ use super::super::diagnosis::{Diagnosis, PlotData, StatePlot};
 use super::axis::across;
 use super::trial::{Line, lines};
 use super::wording::{channel, heading};
-use crate::page::quantity::{between, prefixed_unit, short};
+use crate::page::quantity::{between, prefixed_unit};
 use crate::page::thin;
 use maud::{Markup, html};
 use std::fmt::Write as _;
@@ -137,28 +137,45 @@ fn grid(frame: &Frame, plot: &StatePlot) -> Markup {
     let share = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
     html! {
         @for tick in ticks(frame.y, y_factor) {
+            @let (tick, label) = tick;
             @let y = format!("{:.1}", BOTTOM - share(tick, frame.y) * (BOTTOM - TOP));
             line.decade.zero[tick == 0.0] x1=(across(LEFT)) x2="100%" y1=(y) y2=(y) {}
-            text.soft x=(across(LEFT - 0.012)) y=(y) dy="4" text-anchor="end" { (short(tick / y_factor).replace('-', "−")) }
+            text.soft x=(across(LEFT - 0.012)) y=(y) dy="4" text-anchor="end" { (label) }
         }
         @for tick in ticks(frame.x, x_factor) {
+            @let (tick, label) = tick;
             @let along = share(tick, frame.x);
             @let x = across(LEFT + along * (1.0 - LEFT));
             // A number in the middle of the last line would be cut by the edge.
             @let anchor = if along > 0.96 { "end" } else { "middle" };
             line.decade.zero[tick == 0.0] x1=(x) x2=(x) y1=(TOP) y2=(BOTTOM) {}
-            text.soft x=(x) y=(BOTTOM + 18.0) text-anchor=(anchor) { (short(tick / x_factor).replace('-', "−")) }
+            text.soft x=(x) y=(BOTTOM + 18.0) text-anchor=(anchor) { (label) }
         }
         text x=(across(LEFT)) dx="6" y=(TOP + 12.0) { (plot.ordinate) ", " (y_unit) }
         text x="100%" y=(BOTTOM + 38.0) text-anchor="end" { (plot.along) ", " (x_unit) }
     }
 }
 
-/// Round numbers within both ends, in units of `factor`.
-fn ticks([low, high]: [f64; 2], factor: f64) -> Vec<f64> {
+/// Round numbers within both ends, in units of `factor`, each with its label, which has the decimals of their distance.
+fn ticks([low, high]: [f64; 2], factor: f64) -> Vec<(f64, String)> {
     let rough = (high - low) / factor / TICKS;
     let decade = 10f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|step| *step >= rough).unwrap_or(rough);
     let (first, last) = ((low / factor / step).ceil() as i64, (high / factor / step).floor() as i64);
-    (first..=last).map(|nth| nth as f64 * step * factor).collect()
+    let decimals = (-(step * 1.000_001).log10().floor()).clamp(0.0, 9.0) as usize;
+    let label = |value: f64| format!("{value:.decimals$}").replace('-', "−");
+    (first..=last).map(|nth| (nth as f64 * step * factor, label(nth as f64 * step))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_numbers_of_an_axis_differ() {
+        let labels = |ends, factor| ticks(ends, factor).into_iter().map(|(_, label)| label).collect::<Vec<_>>();
+        assert_eq!(labels([2.918, 2.961], 1.0), ["2.92", "2.93", "2.94", "2.95", "2.96"]);
+        assert_eq!(labels([-3e-3, 5e-3], 1e-3), ["−2", "0", "2", "4"]);
+        assert_eq!(labels([0.0, 0.2], 1.0), ["0.00", "0.05", "0.10", "0.15", "0.20"]);
+    }
 }

@@ -73,7 +73,7 @@ pub(super) fn estimate(value: f64, [low, high]: [f64; 2], unit: &str) -> String 
         return format!("{} (chosen, not fitted)", plain(value, unit));
     }
     if !(below.is_finite() && above.is_finite()) {
-        return format!("{} (interval unknown)", plain(value, unit));
+        return format!("{} (not bounded by these recordings)", plain(value, unit));
     }
     let even = below > 0.0 && above > 0.0 && (below - above).abs() <= 0.2 * below.max(above);
     if even {
