@@ -8,6 +8,8 @@ mod page;
 mod printed;
 #[path = "page/reading.rs"]
 mod reading;
+#[path = "consistency/words.rs"]
+mod words;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -24,6 +26,8 @@ struct Written {
     html: String,
     model: String,
     console: String,
+    /// Standard error.
+    notes: String,
 }
 
 fn diagnosed(case: &Case, folder: &Path) -> Written {
@@ -41,14 +45,15 @@ fn diagnosed(case: &Case, folder: &Path) -> Written {
         )
         .output()
         .unwrap();
-    let console = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{}: {}", case.name, String::from_utf8_lossy(&output.stderr));
+    let [console, notes] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    assert!(output.status.success(), "{}: {notes}", case.name);
     let read = |name: &str| std::fs::read_to_string(path(name)).unwrap();
     Written {
         json: serde_json::from_str(&read("d.json")).unwrap(),
         html: read("d.html"),
         model: read("d.toml"),
         console,
+        notes,
     }
 }
 
@@ -61,6 +66,7 @@ fn contradictions(written: &Written) -> Vec<String> {
     wrong.extend(in_console(written));
     wrong.extend(in_model(written));
     wrong.extend(page::contradictions(&written.json, &written.html));
+    wrong.extend(words::contradictions(&written.json, &written.html, &written.model, &written.notes));
     wrong
 }
 
@@ -197,6 +203,27 @@ fn near(one: f64, other: f64, share: f64) -> bool {
     (one - other).abs() <= share * one.abs().max(other.abs())
 }
 
+/// The page names every file that was read by its hash, and the seed; standard error names every file that was written.
+fn record_of_the_run(written: &Written, folder: &Path) -> Vec<String> {
+    use sha2::{Digest as _, Sha256};
+    let record = written.html.split_once("id=\"run\"").map_or("", |(_, rest)| rest.split("</section>").next().unwrap());
+    let hash = |name: &str| -> String {
+        let bytes = std::fs::read(folder.join(name)).unwrap();
+        Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    };
+    let read = ["rig.toml", "trial-1.csv", "trial-2.csv"].into_iter();
+    let mut wrong: Vec<String> =
+        read.filter(|name| !record.contains(&hash(name))).map(|name| format!("page: another hash of {name}")).collect();
+    if !record.contains("<dt>seed</dt><dd>1</dd>") || !record.contains("--seed 1") {
+        wrong.push("page: another seed".to_owned());
+    }
+    let written_files = ["d.json", "d.html", "d.toml"].into_iter();
+    let unnamed = written_files
+        .filter(|name| !written.notes.lines().any(|line| line.starts_with("wrote ") && line.ends_with(name)));
+    wrong.extend(unnamed.map(|name| format!("console: {name} was written and is not named")));
+    wrong
+}
+
 /// The improved rig runs.
 fn simulated(case: &Case, folder: &Path) -> Result<(), String> {
     let out = folder.join("again.csv");
@@ -228,6 +255,9 @@ fn every_number_is_the_same_wherever_it_is_told() {
         named += all(&written.json, "physics").iter().map(|physics| all(physics, "parameters").len()).sum::<usize>();
         wrong.extend(contradictions(&written).into_iter().map(|what| format!("{}: {what}", case.name)));
         wrong.extend(simulated(case, folder.path()).err());
+        wrong.extend(
+            record_of_the_run(&written, folder.path()).into_iter().map(|what| format!("{}: {what}", case.name)),
+        );
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(CASES.len() >= 20);
@@ -275,6 +305,16 @@ fn a_number_that_is_changed_in_one_place_is_noticed() {
     noticed("a fitted value", &|changed| {
         changed.model = changed.model.replacen("\nstiffness_n_m = ", "\nstiffness_n_m = 1", 1)
     });
+    for at in ["/fit/as_given", "/physics/0/evidence/p_value", "/correlations/0/matrix/1/0", "/nominal/1/given"] {
+        noticed(at, &|changed| {
+            let number = changed.json.pointer_mut(at).unwrap_or_else(|| panic!("no {at}"));
+            *number = (number.as_f64().unwrap() + 0.3).into();
+        });
+    }
+    noticed("what was written", &|changed| {
+        changed.notes = changed.notes.replace("note: ", "").replace("No effort", "An effort")
+    });
+    noticed("the heading", &|changed| changed.html = changed.html.replace("Explained by", "Partly explained by"));
     noticed("a trace", &|changed| changed.html = page::with_another_trace(&changed.html));
 }
 

@@ -19,6 +19,8 @@ pub enum Bench {
     Slide,
     /// A driven tool that presses.
     Driven,
+    /// A driven arm that swings.
+    Arm,
 }
 
 /// A diagnosis.
@@ -33,9 +35,11 @@ pub struct Case {
     pub added: Option<fn(f64, f64) -> f64>,
     /// Stiffness and mass in the file over the real ones.
     pub off: f64,
+    /// Whether the file states neither controller nor motion.
+    pub bare: bool,
 }
 
-const PLAIN: Case = Case { name: "", bench: Bench::Led, missing: "", known: "", added: None, off: 1.0 };
+const PLAIN: Case = Case { name: "", bench: Bench::Led, missing: "", known: "", added: None, off: 1.0, bare: false };
 
 const FADES: &str = "[[effect]]\nname = \"stress_relaxation\"\nbranch_stiffness_n_m = 60.0\nrelaxation_time_s = 0.3\n";
 const DRAGS: &str = "[[effect]]\nname = \"coulomb_friction\"\nlevel_n = 0.8\n";
@@ -78,6 +82,20 @@ pub const CASES: &[Case] = &[
     Case { name: "another stiffness, by a cantilever", bench: Bench::Cantilever, off: 1.3, ..PLAIN },
     Case { name: "nothing, by a lever", bench: Bench::Lever, ..PLAIN },
     Case { name: "another stiffness, by a lever", bench: Bench::Lever, off: 0.7, ..PLAIN },
+    Case {
+        name: "another stiffness, by a lever whose motion is not stated",
+        bench: Bench::Lever,
+        off: 0.8,
+        bare: true,
+        ..PLAIN
+    },
+    Case {
+        name: "a weight on an arm whose controller is not stated",
+        bench: Bench::Arm,
+        missing: "[[effect]]\nname = \"gravity_load\"\nform = \"by_angle\"\nsine_n_m = 2.0\ncosine_n_m = 0.0\nload_n_m = 0.0\n",
+        bare: true,
+        ..PLAIN
+    },
     Case { name: "nothing in a drive", bench: Bench::Slide, ..PLAIN },
     Case { name: "another mass", bench: Bench::Slide, off: 1.3, ..PLAIN },
     Case { name: "friction", bench: Bench::Slide, missing: DRAGS, ..PLAIN },
@@ -96,7 +114,13 @@ pub const CASES: &[Case] = &[
 impl Case {
     /// Writes `rig.toml` and the recordings of two trials, whose places are returned.
     pub fn write(&self, folder: &Path) -> Vec<PathBuf> {
-        std::fs::write(folder.join("rig.toml"), self.rig(0, self.off) + self.known).unwrap();
+        let given = self.rig(0, self.off);
+        let stated = if self.bare {
+            given.split("[control]").next().unwrap().split("[reference]").next().unwrap()
+        } else {
+            &given
+        };
+        std::fs::write(folder.join("rig.toml"), stated.to_owned() + self.known).unwrap();
         let trials = (0..2).map(|trial| {
             let text = self.rig(trial, 1.0) + self.known + self.missing;
             let rig = Rig::parse(&text, self.name).unwrap_or_else(|error| panic!("{error}"));
@@ -132,6 +156,7 @@ impl Case {
             Bench::Led => led(1.0, 1.0, 300.0 * off, (depth, contact, sine)),
             Bench::Cantilever => led(1e-3, 1e-9, 300.0 * off, (depth, contact, sine)),
             Bench::Lever => lever(12.0 * off, contact, sine),
+            Bench::Arm => arm(0.15 * off, sine),
             Bench::Slide => driven("", 0.45 * off, (depth, contact, sine)),
             Bench::Driven => driven(
                 "[contact]\nmodel = \"kelvin_voigt\"\nsurface_m = 0.0\nstiffness_n_m = 300.0\ndamping_n_s_m = 5.0\n",
@@ -169,6 +194,16 @@ fn lever(stiffness: f64, contact: f64, sine: f64) -> String {
          [sensors]\nposition_resolution_rad = 1e-4\ntorque_resolution_n_m = 0.005\ntorque_noise_n_m = 0.01\n\
          [reference]\nfree_depth_rad = -0.1\ncontact_depth_rad = 0.15\nperiod_s = 1.6\ncontact_s = {contact}\n\
          smoothing_s = 0.05\nsine_amplitude_rad = 0.03\nsine_frequency_hz = {sine}\n{RATE}"
+    )
+}
+
+fn arm(inertia: f64, sine: f64) -> String {
+    format!(
+        "[rig]\nname = \"arm\"\ncoordinate = \"rotary\"\n[drive]\ninertia_kg_m2 = {inertia}\nviscous_n_m_s_rad = 0.05\n\
+         [sensors]\nposition_resolution_rad = 1e-4\n[control]\nproportional_n_m_rad = 60\nderivative_n_m_s_rad = 4\nrate_hz = 1000\n\
+         [reference]\nfree_depth_rad = -1.0\ncontact_depth_rad = 1.4\nperiod_s = 1.6\ncontact_s = 0.8\n\
+         smoothing_s = 0.1\nsine_amplitude_rad = 0.2\nsine_frequency_hz = {}\n{RATE}",
+        0.3 * sine
     )
 }
 

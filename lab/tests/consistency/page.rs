@@ -7,12 +7,12 @@ use crate::reading::{bytes, doubles, floats, prose};
 use crate::{all, float, near, text};
 
 /// The part of `html` from behind `from` up to `to`; nothing where either is absent.
-fn part<'a>(html: &'a str, from: &str, to: &str) -> &'a str {
+pub fn part<'a>(html: &'a str, from: &str, to: &str) -> &'a str {
     html.split_once(from).map_or("", |(_, rest)| rest.split_once(to).map_or("", |(part, _)| part))
 }
 
 /// What a reader sees of a fragment.
-fn words(fragment: &str) -> String {
+pub fn words(fragment: &str) -> String {
     let mut text = String::new();
     let mut inside = false;
     for letter in fragment.chars() {

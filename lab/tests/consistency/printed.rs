@@ -121,7 +121,7 @@ fn exponent(rest: &str, unit: &str) -> Option<i32> {
 pub fn agrees(text: &str, unit: &str, wanted: &[f64; 3]) -> bool {
     let shown = numbers(text, unit);
     if !(wanted[1].is_finite() && wanted[2].is_finite()) {
-        return text.contains("unknown") && shown.first().is_some_and(|shown| shown.holds(wanted[0]));
+        return text.contains("not bounded") && shown.first().is_some_and(|shown| shown.holds(wanted[0]));
     }
     match (text.contains('±'), shown.as_slice()) {
         // A half-width stands for ends that may be uneven by a fifth: what is shown is their mean.
