@@ -59,7 +59,7 @@ pub enum Place {
 
 /// A trial with what the estimators made of it.
 pub struct Replayed {
-    /// What was measured.
+    /// Name and time of what was measured; depth and force as they were fed are in the plan.
     pub recording: Recording,
     /// How it was fed to the estimators.
     pub plan: Plan,
@@ -95,9 +95,10 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
             .for_each(|notice| eprintln!("{}", printable(&format!("{}: {notice}", one.recording.name))));
     }
     table::print(&rig, &replayed)?;
-    if let (Some(outputs), Some(folder)) = (outputs, &args.out) {
-        outputs.write(&rig, replayed, &args.options, args.on)?;
-        println!("{}", folder.join("replay.html").display());
+    if let Some(outputs) = outputs {
+        for path in outputs.write(&rig, replayed, &args.options, args.on)? {
+            eprintln!("wrote {}", printable(&path.display().to_string()));
+        }
     }
     Ok(())
 }
@@ -118,6 +119,8 @@ pub fn replay(
     let bar = progress(&recording.name, plan.samples.len());
     runner.run(&plan.config, &plan.samples, |done| bar.set_position(done), |outcome| trace.take(outcome))?;
     bar.finish_and_clear();
+    // Depth and force are in the plan; the other columns of a long recording would only take room.
+    let recording = Recording { name: recording.name, time: recording.time, ..Recording::default() };
     Ok(Replayed { recording, plan, trace })
 }
 

@@ -98,7 +98,7 @@ fn row_of(line: &Target) -> Markup {
     });
     html! {
         tr {
-            th { (line.what) } td { (line.hits) } td { (line.of) } td { (percent(share)) }
+            th { (line.what.replace('`', "")) } td { (line.hits) } td { (line.of) } td { (percent(share)) }
             td { (percent(low)) " to " (percent(high)) } td { (line.target) }
             td { @if let Some((class, word)) = met { span class=(class) { (word) } } }
         }

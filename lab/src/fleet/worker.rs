@@ -97,7 +97,9 @@ impl RigResult {
     pub fn line(&self) -> String {
         let outcome = match &self.diagnosis {
             Err(error) => format!("failed: {error}"),
-            Ok(diagnosis) if diagnosis.physics.is_empty() => diagnosis.verdict.clone(),
+            Ok(diagnosis) if diagnosis.physics.is_empty() || diagnosis.verdict == "unknown" => {
+                diagnosis.verdict.clone()
+            }
             Ok(diagnosis) => format!("{}: {}", diagnosis.verdict, diagnosis.names().join(", ")),
         };
         format!("{}: {outcome}{}", self.name, if self.is_earlier { " (done before)" } else { "" })

@@ -52,12 +52,22 @@ impl ChannelSummary {
 
     /// A line of the listing, the name in `width` letters.
     pub fn line(&self, width: usize) -> String {
-        let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.5e}"));
+        let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), six_digits);
         let rate = self.rate_hz.map_or_else(|| "-".to_owned(), |rate| format!("{rate:.2}"));
         let [low, high] = [0, 1].map(|end| number(self.range.map(|range| range[end])));
         let (name, count, notes) = (&self.name, self.count, self.notes.join("; "));
         format!("{name:width$}  {count:>9}  {rate:>10}  {low:>12}  {high:>12}  {notes}").trim_end().to_owned() + "\n"
     }
+}
+
+/// Six significant digits; a power of ten where there would be many zeros.
+fn six_digits(value: f64) -> String {
+    let magnitude = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    if !(-4..7).contains(&magnitude) {
+        return format!("{value:.5e}");
+    }
+    let text = format!("{value:.*}", (5 - magnitude).max(0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// Seconds; `None` where time does not go on.
@@ -92,4 +102,15 @@ fn blemishes(values: &[f64]) -> Vec<String> {
         notes.push("constant".to_owned());
     }
     notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::six_digits;
+
+    #[test]
+    fn a_number_that_can_be_read_at_once_has_no_power_of_ten() {
+        let shown = [0.0, 12.419, -278.781, 0.246469, -2.093e-5, 3e9, 1_234_567.8].map(six_digits);
+        assert_eq!(shown, ["0", "12.419", "-278.781", "0.246469", "-2.09300e-5", "3.00000e9", "1234568"]);
+    }
 }

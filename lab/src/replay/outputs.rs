@@ -22,6 +22,8 @@ pub struct Outputs {
     estimates: Vec<OutFile>,
     page: OutFile,
     folder: PathBuf,
+    /// Every file, for the reader.
+    paths: Vec<PathBuf>,
 }
 
 impl Outputs {
@@ -51,21 +53,29 @@ impl Outputs {
         let outputs: Vec<_> = places.iter().chain([&page]).map(|place| ("--out", place.as_path())).collect();
         output_paths::check(&inputs, &outputs)?;
         let estimates = places.iter().map(|place| OutFile::create(place)).collect::<Result<_, _>>()?;
-        Ok(Self { estimates, page: OutFile::create(&page)?, folder: folder.to_owned() })
+        let paths = places.into_iter().chain([page.clone()]).collect();
+        Ok(Self { estimates, page: OutFile::create(&page)?, folder: folder.to_owned(), paths })
     }
 
-    /// Writes what was replayed, whole or not at all.
+    /// Writes what was replayed, whole or not at all; returns the files.
     ///
     /// # Errors
     /// The place cannot be written any more.
-    pub fn write(mut self, rig: &Rig, replayed: Vec<Replayed>, options: &Options, place: Place) -> Result<()> {
+    pub fn write(
+        mut self,
+        rig: &Rig,
+        replayed: Vec<Replayed>,
+        options: &Options,
+        place: Place,
+    ) -> Result<Vec<PathBuf>> {
         for (file, replayed) in self.estimates.into_iter().zip(&replayed) {
             estimates::write(file, rig.coordinate, replayed)?;
         }
         let diagnosis = neighbour::beside(&self.folder.join(REPLAY_PAGE), &DIAGNOSIS_PAGES, "palpate diagnose");
         let page = Page { diagnosis, ..page(rig, replayed, options, place) };
         page.write(&mut self.page).map_err(|error| self.page.fault(&error))?;
-        Ok(self.page.commit()?)
+        self.page.commit()?;
+        Ok(self.paths)
     }
 }
 

@@ -1,6 +1,7 @@
 //! An effect that no eye sees, and what is said of it.
 
 use crate::page::effect_name::effect_name;
+use crate::page::quantity::{between, rounded, seconds};
 use std::fmt::Write as _;
 
 use maud::{Markup, html};
@@ -48,7 +49,7 @@ pub(super) fn section(challenge: &ChallengeScore) -> Markup {
             (panel("Recorded less simulated", picture.unit, &picture.time,
                 &[("recorded", &difference(&picture)), ("effect", &picture.effect)]))
             p.legend {
-                span.recorded { "● recorded less simulated, deviation " (format!("{:.2e} {}", picture.deviation, picture.unit)) } "  "
+                span.recorded { "● recorded less simulated, standard deviation " (rounded(picture.deviation, picture.unit, 2)) } "  "
                 span.effect { "━ what the named effect changes" }
             }
         }
@@ -150,7 +151,7 @@ fn panel(title: &str, unit: &str, time: &[f64], series: &[(&str, &Vec<f64>)]) ->
     };
     html! {
         figure.trace {
-            figcaption { (title) ", " (unit) ": " (format!("{low:.3}")) " to " (format!("{high:.3}")) ", over " (format!("{:.1}", end - start)) " s" }
+            figcaption { (title) ": " (between(low, high, unit)) ", over " (seconds(end - start)) }
             svg viewBox="0 0 1000 200" preserveAspectRatio="none" role="img" aria-label=(title) height="200" {
                 @for (name, values) in series { path class=(name) d=(path(name, values)) vector-effect="non-scaling-stroke" {} }
             }

@@ -15,7 +15,7 @@ pub(super) fn section(results: &Results) -> Markup {
     html! {
         section #tables aria-labelledby="tables-title" {
             h2 #tables-title { "Tables I to IV" }
-            p { "Mean and spread of five trials, samples read as: " strong { (shown.reading.name) } ". Beside each figure, in grey, the paper's own; a dash where it is not at hand." }
+            p { "Means of five trials, samples read as: " strong { (shown.reading.name) } ". Below each figure, in grey, its spread and the paper's own; a dash where that is not at hand." }
             (by_contact(shown))
             (by_window(shown, "Table II. RMSE% on the soft contact, by window (for EWRLS: the horizon of its forgetting)", &RMSE_BY_WINDOW, |cell| cell.rmse))
             (by_window(shown, "Table III. Standard deviation of K on the soft contact, N/m, from 1 s after the touch on", &STD_BY_WINDOW, |cell| cell.deviation))
