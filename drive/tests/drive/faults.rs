@@ -217,7 +217,7 @@ fn a_tare_that_was_ordered_while_the_sensors_were_silent_is_refused_in_contact()
         (0..500).for_each(|_| assert!(cycle.tick(Input::NOTHING).sample.is_none()));
         cycle.order(Order::Tare);
         (0..500).for_each(|_| assert!(cycle.tick(Input::NOTHING).sample.is_none()));
-        (1_000..1_400).for_each(|k| drop(cycle.tick(dithered(k))));
+        (1_000..1_400).for_each(|k| _ = cycle.tick(dithered(k)));
         assert_eq!((cycle.scale().zero, counters.others()[3]), (0.0, 1));
     });
 }
