@@ -23,7 +23,7 @@ pub fn contradictions(json: &Value, html: &str, model: &str, stderr: &str) -> Ve
 
 fn verdict(json: &Value, html: &str) -> Vec<String> {
     let heading = words(part(html, "<h1 class=\"verdict", "</h1>"));
-    let heading = heading.split_once('>').map_or(heading.as_str(), |(_, heading)| heading);
+    let heading = heading.rsplit_once('"').map_or(heading.as_str(), |(_, heading)| heading);
     let wanted = match text(json, "verdict") {
         "no_mismatch" => "No mismatch",
         "parameters" => "Other values, no other physics",

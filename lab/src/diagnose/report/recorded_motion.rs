@@ -29,11 +29,11 @@ pub fn runnable(given: &Rig, improved: &Rig, trial: &Recording) -> Rig {
     let smoothing_s = rig.reference.map_or(motion.smoothing_s, |reference| reference.smoothing_s);
     let corner = STIFF_LOOP / smoothing_s;
     let usual = Simulation::default();
-    let rate_hz = (ROWS_A_RADIAN * corner).max(usual.rate_hz);
+    let rate_hz = short((ROWS_A_RADIAN * corner).max(usual.rate_hz));
     if let (true, Some(drive)) = (lacks_control, improved.drive) {
         rig.control = Some(Control {
-            proportional: drive.inertia * corner * corner,
-            derivative: 2.0 * drive.inertia * corner,
+            proportional: short(drive.inertia * corner * corner),
+            derivative: short(2.0 * drive.inertia * corner),
             derivative_filter_hz: None,
             effort_saturation: f64::INFINITY,
             rate_hz,
@@ -42,13 +42,18 @@ pub fn runnable(given: &Rig, improved: &Rig, trial: &Recording) -> Rig {
     if given.simulation == usual {
         // Two periods show what one shows, and that it comes again.
         let periods = 2.0 * rig.reference.map_or(motion.period_s, |reference| reference.period_s);
-        rig.simulation = Simulation { duration_s: periods, rate_hz: rate_hz.min(MOST_ROWS / periods) };
+        rig.simulation = Simulation { duration_s: periods, rate_hz: short(rate_hz.min(MOST_ROWS / periods)) };
     }
     rig
 }
 
 /// Rows of a simulated trial that are enough for any picture.
 const MOST_ROWS: f64 = 200_000.0;
+
+/// Four significant digits: nothing here is known better.
+fn short(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
 
 /// Pulses between the least and the greatest position, depths counted from `surface`; `None` where nothing moves.
 fn pulses(trial: &Recording, surface: f64) -> Option<Reference> {
@@ -73,11 +78,11 @@ fn pulses(trial: &Recording, surface: f64) -> Option<Reference> {
     let period_s = duration / f64::from(rises.max(1));
     let contact_s = (above / f64::from(rises.max(1))).clamp(0.1 * period_s, 0.9 * period_s);
     Some(Reference {
-        free_depth: low - surface,
-        contact_depth: high - surface,
-        period_s,
-        contact_s,
-        smoothing_s: SMOOTHING * contact_s.min(period_s - contact_s),
+        free_depth: short(low - surface),
+        contact_depth: short(high - surface),
+        period_s: short(period_s),
+        contact_s: short(contact_s),
+        smoothing_s: short(SMOOTHING * contact_s.min(period_s - contact_s)),
         sine_amplitude: 0.0,
         sine_frequency_hz: 0.0,
     })

@@ -21,6 +21,12 @@ pub fn is_noise(fit: &FitQuality) -> bool {
     fit.improved < MOST_OVER_NOISE * fit.noise_floor
 }
 
+/// Whether refitted values leave more than those of the rig file on rows that no fit saw, in the three digits that a reader sees.
+pub(super) fn refit_is_worse(fit: &FitQuality) -> bool {
+    let shown = |value: f64| quantity::rounded(value, fit.unit, 3);
+    fit.as_given < fit.refitted && shown(fit.as_given) != shown(fit.refitted)
+}
+
 /// One sentence or two.
 #[must_use]
 pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
@@ -83,11 +89,9 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
             };
             let pronoun = if names.len() == 1 { "it" } else { "them" };
             // What is missing was fitted into the values, which then do worse elsewhere than those of the file.
-            let given = if fit.as_given < fit.refitted {
-                format!(
-                    " (refitted values without {pronoun}; those of the rig file leave {})",
-                    quantity::rounded(fit.as_given, unit, 3)
-                )
+            let given = quantity::rounded(fit.as_given, unit, 3);
+            let given = if refit_is_worse(fit) {
+                format!(" (refitted values without {pronoun}; those of the rig file leave {given})")
             } else {
                 String::new()
             };

@@ -1,7 +1,7 @@
 //! How well the models fit: up to five bars a channel.
 
 use super::super::diagnosis::{Diagnosis, FitQuality, Verdict};
-use super::super::summary::MOST_OVER_NOISE;
+use super::super::summary::{MOST_OVER_NOISE, refit_is_worse};
 use super::axis::{Axis, across};
 use super::names_physics;
 use super::wording::{channel, heading, multiple, share, times};
@@ -117,7 +117,7 @@ fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
         } @else {
             "Refitted values leave " strong { (left) } " in the " (name) ", which is no sign of missing physics."
         }
-        @if goodness.as_given < goodness.refitted && !is_within_noise(goodness) {
+        @if refit_is_worse(goodness) && !is_within_noise(goodness) {
             " On rows that no fit saw, refitted values leave more than those of the rig file: without what is missing, each half of the recordings teaches values that do not suit the other."
         }
         @if let Some(rest) = goodness.learned {
