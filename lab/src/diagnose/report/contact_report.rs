@@ -214,7 +214,9 @@ fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate
     let (force, length) = (coordinate.force_unit(), coordinate.position_unit());
     let shape = curve.shape();
     let notable = (3.0 * outcome.expected_noise).max(LEAST_FEATURE * shape.range);
-    let share = quantity::percent(100.0 * share);
+    // No rounding shall make "all" of nearly all.
+    let share =
+        if share > 0.99 { format!("{:.1}\u{a0}%", 100.0 * share.min(0.999)) } else { quantity::percent(100.0 * share) };
     let left = quantity::rounded(rms(&data(outcome), &curve.residual), force, 3);
     let mut text = format!(
         " A curve over depth and direction that is learned from the recordings takes {share} of it on held-out rows and leaves {left}"

@@ -13,13 +13,13 @@ const STIFF_LOOP: f64 = 10.0;
 /// Rows of the controller, and of the simulation, for a radian of the loop.
 const ROWS_A_RADIAN: f64 = 10.0;
 
-/// `improved`, with control, reference and length of trial where the file `given` has neither and those of the bench do not fit the rig: pulses
+/// `improved`, with control, reference and length of trial where the file `given` has neither and those of the bench do not fit: pulses
 /// between the ends of the position of `trial`, as many as it has, and a controller that follows them.
 #[must_use]
 pub fn runnable(given: &Rig, improved: &Rig, trial: &Recording) -> Rig {
     let mut rig = improved.clone();
     let lacks_control = given.control.is_none() && given.drive.is_some();
-    if is_bench_sized(given) || !(lacks_control || given.reference.is_none()) {
+    if is_bench_sized(improved) || !(lacks_control || given.reference.is_none()) {
         return rig;
     }
     let Some(motion) = pulses(trial, improved.surface()) else { return rig };

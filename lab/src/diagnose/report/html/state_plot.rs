@@ -45,7 +45,7 @@ fn figure(plot: &StatePlot, all: &[Line]) -> Markup {
             figcaption { h3 { (title) } p { (plot.trial) ", " (time) ". Points are measured; lines are simulated on held-out rows." } }
             p.keys {
                 span { span.key.dot {} "measured" }
-                @for line in &lines { span { span.stroke.(line.key) {} (line.name) } }
+                @for line in &lines { span { span.stroke.(line.key) {} (line.name) @if frame.is_beyond(column(plot, line.key)) { " (beyond this picture)" } } }
             }
             svg.state role="img" aria-label={ (title) ": measured, and simulated " (names.join(", ")) "." } height=(HEIGHT) {
                 (grid(&frame, plot))
@@ -84,6 +84,12 @@ impl Frame {
         let y = [low.min(best_low.max(low - reach)), high.max(best_high.min(high + reach))];
         let is_drawable = x[1] > x[0] && y[1] > y[0];
         is_drawable.then(|| Self { x: padded(x), y: padded(y) })
+    }
+
+    /// Whether no point of a line lies within the picture.
+    fn is_beyond(&self, values: &[f32]) -> bool {
+        let [low, high] = self.y;
+        !values.iter().any(|value| (low..=high).contains(&f64::from(*value)))
     }
 
     fn place(&self, x: f32, y: f32) -> Option<(f64, f64)> {
