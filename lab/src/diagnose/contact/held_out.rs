@@ -144,7 +144,11 @@ mod tests {
         let mut recording = TestContact::PLAIN.recording(3);
         let stretch = ((12.0 * RATE) as usize).div_ceil(BLOCKS);
         let force = recording.force.as_mut().unwrap();
-        force.iter_mut().enumerate().filter(|(row, _)| row / stretch % 2 == 0).for_each(|(_, force)| *force += 0.4);
+        force
+            .iter_mut()
+            .enumerate()
+            .filter(|(row, _)| (row / stretch).is_multiple_of(2))
+            .for_each(|(_, force)| *force += 0.4);
         let trials: [ContactTrial; 1] = [TestContact::seen(&recording)];
         let data = Data::new(&trials);
         let held = Folds::of(&data).held_out(&data, &with_bias(&data));
