@@ -8,7 +8,7 @@ use crate::block::{BlockLeastMeanFourth, Direction};
 use crate::contact::Sample;
 use crate::error::{ConfigError, require};
 use crate::front_end::Rejection;
-use crate::quality::Estimate;
+use crate::quality::{Estimate, Flags};
 use crate::recursive::{CusumRls, CusumRlsConfig};
 use crate::recursive::{DirectionalRls, DirectionalRlsConfig};
 use crate::recursive::{Ewrls, EwrlsConfig};
@@ -16,6 +16,7 @@ use crate::recursive::{Gradient, GradientConfig};
 use crate::recursive::{ResetRls, ResetRlsConfig};
 use crate::recursive::{Sprls, SprlsConfig};
 use crate::stream::{EstimatorState, Event, Stream, StreamConfig, ValidatedStreamConfig};
+use crate::update_law::UpdateLaw;
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -259,6 +260,23 @@ impl ValidatedBankConfig {
     }
 }
 
+/// What to do with the law of a method, whatever its type.
+macro_rules! with_law {
+    ($laws:expr, $method:expr, $law:ident => $todo:expr) => {
+        with_law!(@ $laws, $method, $law, $todo, Rls rls, Ewrls ewrls, Sprls sprls, ResetRls reset_rls, Gradient gradient, Bls bls,
+            Blms blms, Blmf blmf, NewtonBlmf newton_blmf, CusumRls cusum_rls, AdaptiveBls adaptive_bls,
+            DirectionalRls directional_rls)
+    };
+    (@ $laws:expr, $method:expr, $law:ident, $todo:expr, $($name:ident $field:ident),+) => {
+        match $method {
+            $(Method::$name => {
+                let $law = &mut $laws.$field;
+                $todo
+            })+
+        }
+    };
+}
+
 impl Laws {
     fn new(laws: &ValidatedLaws) -> Self {
         Self {
@@ -297,38 +315,28 @@ impl Laws {
 
     /// Begins the state of `method` anew.
     fn restart(&mut self, method: Method) {
-        match method {
-            Method::Rls => self.rls.restart(),
-            Method::Ewrls => self.ewrls.restart(),
-            Method::Sprls => self.sprls.restart(),
-            Method::ResetRls => self.reset_rls.restart(),
-            Method::Gradient => self.gradient.restart(),
-            Method::Bls => self.bls.restart(),
-            Method::Blms => self.blms.restart(),
-            Method::Blmf => self.blmf.restart(),
-            Method::NewtonBlmf => self.newton_blmf.restart(),
-            Method::CusumRls => self.cusum_rls.restart(),
-            Method::AdaptiveBls => self.adaptive_bls.restart(),
-            Method::DirectionalRls => self.directional_rls.restart(),
-        }
+        with_law!(self, method, law => law.restart());
     }
 
     fn update(&mut self, method: Method, stream: &Stream<BANK_WINDOW>, event: &Event) -> Estimate {
-        match method {
-            Method::Rls => self.rls.update(stream, event),
-            Method::Ewrls => self.ewrls.update(stream, event),
-            Method::Sprls => self.sprls.update(stream, event),
-            Method::ResetRls => self.reset_rls.update(stream, event),
-            Method::Gradient => self.gradient.update(stream, event),
-            Method::Bls => self.bls.update(stream, event),
-            Method::Blms => self.blms.update(stream, event),
-            Method::Blmf => self.blmf.update(stream, event),
-            Method::NewtonBlmf => self.newton_blmf.update(stream, event),
-            Method::CusumRls => self.cusum_rls.update(stream, event),
-            Method::AdaptiveBls => self.adaptive_bls.update(stream, event),
-            Method::DirectionalRls => self.directional_rls.update(stream, event),
-        }
+        with_law!(self, method, law => law.update(stream, event))
     }
+
+    /// [`EstimatorState::settle`] of `method`.
+    fn settle(&mut self, method: Method, stream: &Stream<BANK_WINDOW>, event: &Event) -> Option<Estimate> {
+        with_law!(self, method, law => law.settle(stream, event))
+    }
+
+    /// [`EstimatorState::learn`] of `method`.
+    fn learn(&mut self, method: Method, stream: &Stream<BANK_WINDOW>, flags: Flags) -> Estimate {
+        with_law!(self, method, law => learn(law, stream, flags))
+    }
+}
+
+/// Each law's own function: together they would all pay for the registers and the stack of the longest.
+#[inline(never)]
+fn learn<L: UpdateLaw>(law: &mut EstimatorState<L>, stream: &Stream<BANK_WINDOW>, flags: Flags) -> Estimate {
+    law.learn(stream, flags)
 }
 
 impl EstimatorBank {
@@ -379,11 +387,29 @@ impl EstimatorBank {
     /// # Errors
     /// As [`Self::update`].
     pub fn update_one(&mut self, method: Method, sample: Sample) -> Result<Estimate, Rejection> {
-        let event = self.stream.update(sample)?;
+        let flags = match self.stream.update_in_contact(&sample) {
+            Some(flags) => flags,
+            None => {
+                let event = self.stream.update(sample)?;
+                if let Some(estimate) = self.settle(method, &event) {
+                    return Ok(estimate);
+                }
+                event.flags
+            }
+        };
         if !self.methods.contains(method) {
             return Ok(Estimate::NO_CONTACT);
         }
-        Ok(self.laws.update(method, &self.stream, &event))
+        Ok(self.laws.learn(method, &self.stream, flags))
+    }
+
+    /// The estimate of an event that brings no row. Apart, so that a row does not pay for it.
+    #[inline(never)]
+    fn settle(&mut self, method: Method, event: &Event) -> Option<Estimate> {
+        if !self.methods.contains(method) {
+            return Some(Estimate::NO_CONTACT);
+        }
+        self.laws.settle(method, &self.stream, event)
     }
 
     /// Forgets everything but the settings: the next sample is the first. Bounded work, whatever the window.

@@ -1,9 +1,9 @@
 //! The whole way from sensor readings to an estimate, for one law.
 
-use crate::contact::Sample;
+use crate::contact::{Impedance, Sample};
 use crate::error::{ConfigError, require};
 use crate::front_end::Rejection;
-use crate::quality::Estimate;
+use crate::quality::{Estimate, Flags};
 use crate::recursive::{CusumRls, CusumRlsConfig};
 use crate::stream::{EstimatorState, Stream, StreamConfig};
 use crate::update_law::UpdateLaw;
@@ -36,6 +36,42 @@ impl Identifier {
     }
 }
 
+impl<const N: usize> Identifier<CusumRls, N> {
+    /// As [`Self::update`], without what an interval takes, a third of the instructions: K and B in SI, zero out of contact, with
+    /// every flag but [`Flags::STIFFNESS_UNCERTAIN`] and [`Flags::DAMPING_UNCERTAIN`], which come of the interval.
+    /// [`Self::half_width`] tells the interval whenever it is asked for; the uncertainty is followed in any case.
+    ///
+    /// The estimate and its interval are those of [`Self::update`] to the bit, and either may be called for each sample. Only an
+    /// estimate that [`Self::update`] holds over a gap right after this has an infinite interval.
+    ///
+    /// # Errors
+    /// As [`Self::update`].
+    pub fn update_estimate(&mut self, sample: Sample) -> Result<(Impedance, Flags), Rejection> {
+        match self.stream.update_in_contact(&sample) {
+            Some(flags) => Ok(self.tracker.learn_estimate(&self.stream, flags)),
+            None => self.update_estimate_otherwise(&sample),
+        }
+    }
+
+    /// [`Self::update_estimate`] for any sample. Apart, so that the usual one does not pay for it.
+    #[inline(never)]
+    fn update_estimate_otherwise(&mut self, sample: &Sample) -> Result<(Impedance, Flags), Rejection> {
+        let event = self.stream.update(*sample)?;
+        Ok(match self.tracker.settle(&self.stream, &event) {
+            Some(estimate) => {
+                (estimate.impedance, estimate.flags - Flags::STIFFNESS_UNCERTAIN - Flags::DAMPING_UNCERTAIN)
+            }
+            None => self.tracker.learn_estimate(&self.stream, event.flags),
+        })
+    }
+
+    /// Half-widths of the 95 % intervals of the present K and B [N/m, N s/m; N m/rad, N m s/rad]: [`Estimate::half_width`]. Infinite where
+    /// nothing is known, zero out of contact. After a gap in time at which nothing was discarded it is that of the estimate before.
+    pub fn half_width(&self) -> Impedance {
+        if self.stream.touches() { self.tracker.half_width(&self.stream) } else { Impedance::ZERO }
+    }
+}
+
 impl<L: UpdateLaw, const N: usize> Identifier<L, N> {
     /// Checks the settings against each other.
     ///
@@ -51,7 +87,16 @@ impl<L: UpdateLaw, const N: usize> Identifier<L, N> {
     /// # Errors
     /// Why the sample was rejected. Then nothing but the clock has moved, and the next good sample goes on.
     pub fn update(&mut self, sample: Sample) -> Result<Estimate, Rejection> {
-        let event = self.stream.update(sample)?;
+        match self.stream.update_in_contact(&sample) {
+            Some(flags) => Ok(self.tracker.learn(&self.stream, flags)),
+            None => self.update_otherwise(&sample),
+        }
+    }
+
+    /// [`Self::update`] for any sample. Apart, so that the usual one does not pay for it.
+    #[inline(never)]
+    fn update_otherwise(&mut self, sample: &Sample) -> Result<Estimate, Rejection> {
+        let event = self.stream.update(*sample)?;
         Ok(self.tracker.update(&self.stream, &event))
     }
 
@@ -68,6 +113,54 @@ mod tests {
 
     fn law(window: u16) -> BlockLeastSquares {
         BlockLeastSquares::new(BlockConfig::of(window)).expect("sound settings")
+    }
+
+    /// Onset, K that jumps, loss, samples that are refused, a gap, and an onset again: K, B and their intervals are the same bits
+    /// whether the interval is told with the update or asked for behind it.
+    #[test]
+    fn an_interval_that_is_asked_for_is_the_one_that_is_told() {
+        let mut told = Identifier::recommended(StreamConfig::BENCH).expect("sound settings");
+        let (mut asked, mut mixed) = (told.clone(), told.clone());
+        let (mut finite, mut infinite, mut away) = (0, 0, 0);
+        let of_interval = Flags::STIFFNESS_UNCERTAIN | Flags::DAMPING_UNCERTAIN;
+        for k in 0..3_000_u16 {
+            let triangle = f32::from(k % 40) - 20.0;
+            let depth = if k % 900 < 700 { 0.01 + 1e-4 * triangle.abs() } else { -0.01 };
+            let stiffness = if k % 900 < 400 { 300.0 } else { 900.0 };
+            let elapsed = match k {
+                _ if k % 100 == 99 => f32::NAN,
+                1200 => 3.0,
+                _ => 1e-3,
+            };
+            let force = stiffness * depth.max(0.0) + 1e-3 * f32::from(k % 7);
+            let sample = Sample { position: depth, force, elapsed };
+            let expected = told.update(sample);
+            let found = asked.update_estimate(sample);
+            let Ok(expected) = expected else {
+                assert_eq!(found, Err(expected.expect_err("refused")));
+                let _ = mixed.update(sample);
+                continue;
+            };
+            assert_eq!(found, Ok((expected.impedance, expected.flags - of_interval)), "at {k}");
+            assert_eq!(asked.half_width(), expected.half_width, "at {k}");
+            // In turn: also what is held over the gap, but for its interval.
+            let [impedance, half_width] = if k % 2 == 0 {
+                mixed.update(sample).map(|e| [e.impedance, e.half_width]).expect("a sample")
+            } else {
+                let (impedance, _) = mixed.update_estimate(sample).expect("a sample");
+                [impedance, mixed.half_width()]
+            };
+            assert_eq!(impedance, expected.impedance, "at {k}");
+            if k != 1200 {
+                assert_eq!(half_width, expected.half_width, "at {k}");
+            }
+            match expected.half_width.stiffness {
+                0.0 => away += 1,
+                width if width.is_finite() => finite += 1,
+                _ => infinite += 1,
+            }
+        }
+        assert!(finite > 2_000 && infinite >= 4 && away > 500, "{finite} {infinite} {away}");
     }
 
     #[test]

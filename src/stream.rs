@@ -1,11 +1,12 @@
 //! What all estimators of one contact share: front end, ring of observations, range of movement.
 
-use crate::contact::Sample;
+use crate::contact::{Impedance, Observation, Sample};
 use crate::error::ConfigError;
 use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection};
 use crate::math::{larger, smaller};
 use crate::quality::Flags;
 use crate::quality::{Estimate, IntervalEstimator, SensorResolution};
+use crate::recursive::CusumRls;
 use crate::update_law::UpdateLaw;
 use crate::window::{Recent, Window};
 #[cfg(feature = "serde")]
@@ -55,7 +56,7 @@ pub struct Stream<const N: usize> {
     assessor: IntervalEstimator,
     contact_loss: ContactLoss,
     four_counts: f32,
-    movement_decay: f32,
+    half_movement_decay: f32,
     state: FrontEndState,
     window: Window<N>,
     in_contact: bool,
@@ -70,7 +71,7 @@ pub(crate) struct ValidatedStreamConfig {
     assessor: IntervalEstimator,
     contact_loss: ContactLoss,
     four_counts: f32,
-    movement_decay: f32,
+    half_movement_decay: f32,
 }
 
 impl ValidatedStreamConfig {
@@ -83,7 +84,7 @@ impl ValidatedStreamConfig {
             assessor: IntervalEstimator::new(&front_end, config.sensors),
             contact_loss: config.contact_loss,
             four_counts: 4.0 * config.sensors.position_resolution / config.front_end.units.penetration,
-            movement_decay: core::f32::consts::LN_2 / f32::from(config.movement_memory),
+            half_movement_decay: 0.5 * core::f32::consts::LN_2 / f32::from(config.movement_memory),
         })
     }
 }
@@ -115,7 +116,7 @@ impl<const N: usize> Stream<N> {
             assessor: validated.assessor,
             contact_loss: validated.contact_loss,
             four_counts: validated.four_counts,
-            movement_decay: validated.movement_decay,
+            half_movement_decay: validated.half_movement_decay,
             state: FrontEndState::default(),
             window: Window::new(),
             in_contact: false,
@@ -136,8 +137,7 @@ impl<const N: usize> Stream<N> {
         flags.set(Flags::RESTARTED, reading.restarted);
         let lost = self.in_contact && !reading.contact;
         if reading.contact && !reading.restarted {
-            self.window.push(reading.observation);
-            flags.set(Flags::LITTLE_MOVEMENT, self.movement(reading.observation.penetration) < self.four_counts);
+            flags |= self.take(reading.observation);
             self.in_contact = true;
         }
         if lost {
@@ -149,12 +149,32 @@ impl<const N: usize> Stream<N> {
         Ok(Event { reading, lost, flags })
     }
 
+    /// Takes a usual sample of a contact that goes on, and tells [`Event::flags`]; `None`, and nothing has changed, for all others. For
+    /// them [`Self::update`], which does the same with these, too.
+    #[inline(always)]
+    pub(crate) fn update_in_contact(&mut self, sample: &Sample) -> Option<Flags> {
+        if !self.in_contact {
+            return None;
+        }
+        let observation = self.front_end.update_in_contact(&mut self.state, sample)?;
+        Some(self.take(observation))
+    }
+
+    /// Takes a row of the contact; [`Flags::LITTLE_MOVEMENT`] where it holds.
+    #[inline(always)]
+    fn take(&mut self, observation: Observation) -> Flags {
+        self.window.push(observation);
+        let movement = self.movement(observation.penetration);
+        if movement < self.four_counts { Flags::LITTLE_MOVEMENT } else { Flags::empty() }
+    }
+
     /// Peak to peak of the penetration, forgotten slowly towards its middle.
+    #[inline(always)]
     fn movement(&mut self, penetration: f32) -> f32 {
         if !self.in_contact {
             (self.low, self.high) = (penetration, penetration);
         }
-        let fade = 0.5 * self.movement_decay * (self.high - self.low);
+        let fade = self.half_movement_decay * (self.high - self.low);
         self.low = smaller(self.low + fade, penetration);
         self.high = larger(self.high - fade, penetration);
         self.high - self.low
@@ -164,7 +184,7 @@ impl<const N: usize> Stream<N> {
     pub(crate) fn configure(&mut self, validated: ValidatedStreamConfig) {
         (self.front_end, self.assessor, self.contact_loss) =
             (validated.front_end, validated.assessor, validated.contact_loss);
-        (self.four_counts, self.movement_decay) = (validated.four_counts, validated.movement_decay);
+        (self.four_counts, self.half_movement_decay) = (validated.four_counts, validated.half_movement_decay);
         self.restart();
     }
 
@@ -173,6 +193,11 @@ impl<const N: usize> Stream<N> {
         self.state = FrontEndState::default();
         self.window.clear();
         self.in_contact = false;
+    }
+
+    /// Whether the latest sample that was taken is in contact.
+    pub(crate) fn touches(&self) -> bool {
+        self.front_end.touches(&self.state)
     }
 
     /// The latest observations of the contact.
@@ -219,6 +244,14 @@ impl<L: UpdateLaw> EstimatorState<L> {
 
     /// Updates with `event`, which `stream` has just returned.
     pub fn update<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Estimate {
+        match self.settle(stream, event) {
+            Some(estimate) => estimate,
+            None => self.learn(stream, event.flags),
+        }
+    }
+
+    /// The estimate of an event that brings no row, and what a loss of contact discards; `None` where there is a row to learn from.
+    pub(crate) fn settle<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Option<Estimate> {
         if event.lost {
             match stream.contact_loss {
                 ContactLoss::Everything => self.state = self.law.initial_state(),
@@ -229,19 +262,45 @@ impl<L: UpdateLaw> EstimatorState<L> {
         if !event.reading.contact {
             self.last = Estimate::UNKNOWN;
             let units = stream.front_end.config().units;
-            return Estimate {
+            return Some(Estimate {
                 innovation: event.reading.observation.force * units.force,
                 flags: Flags::NO_CONTACT | event.flags,
                 ..Estimate::NO_CONTACT
-            };
+            });
         }
-        if event.reading.restarted {
-            return Estimate { innovation: 0.0, flags: self.last.flags | event.flags | Flags::HELD, ..self.last };
-        }
+        event.reading.restarted.then(|| Estimate {
+            innovation: 0.0,
+            flags: self.last.flags | event.flags | Flags::HELD,
+            ..self.last
+        })
+    }
+
+    /// Updates with the row that `stream` has just taken, in a contact that goes on.
+    #[inline(always)]
+    pub(crate) fn learn<const N: usize>(&mut self, stream: &Stream<N>, flags: Flags) -> Estimate {
         let step = self.law.update(&mut self.state, stream.recent());
         let estimate = stream.assessor.assess(&step);
-        self.last = Estimate { flags: estimate.flags | event.flags, ..estimate };
+        self.last = Estimate { flags: estimate.flags | flags, ..estimate };
         self.last
+    }
+}
+
+impl EstimatorState<CusumRls> {
+    /// [`Self::learn`] without the interval: K and B in SI, and the flags that need none.
+    #[inline(always)]
+    pub(crate) fn learn_estimate<const N: usize>(&mut self, stream: &Stream<N>, flags: Flags) -> (Impedance, Flags) {
+        let o = stream.recent().newest().unwrap_or_default();
+        let (fill, of_law) = self.law.learn(&mut self.state, &o);
+        let estimate = self.state.recursion.estimate;
+        let impedance = stream.assessor.in_si(estimate);
+        let flags = of_law | flags | IntervalEstimator::doubts(estimate, fill);
+        self.last = Estimate { impedance, fill, flags, ..Estimate::UNKNOWN };
+        (impedance, flags)
+    }
+
+    /// Half-widths of the 95 % intervals of what was learnt, in SI.
+    pub(crate) fn half_width<const N: usize>(&self, stream: &Stream<N>) -> Impedance {
+        stream.assessor.half_width_in_si(self.state.recursion.estimate, &self.law.confidence(&self.state))
     }
 }
 
@@ -256,7 +315,7 @@ mod tests {
     #[test]
     fn the_movement_is_a_peak_to_peak_that_fades_towards_its_middle() {
         let mut stream = stream(StreamConfig::BENCH);
-        stream.movement_decay = 0.5;
+        stream.half_movement_decay = 0.25;
         (stream.low, stream.high) = (-9.0, 9.0);
         assert_eq!(stream.movement(3.0), 0.0, "a contact begins with no movement");
         stream.in_contact = true;
@@ -288,7 +347,7 @@ mod tests {
     fn little_movement_is_less_than_four_counts() {
         let little = |four_counts: f32| {
             let mut stream = stream(StreamConfig::BENCH);
-            (stream.four_counts, stream.movement_decay) = (four_counts, 0.0);
+            (stream.four_counts, stream.half_movement_decay) = (four_counts, 0.0);
             push(&mut stream, 0.01, 3.0);
             core::array::from_fn(|_| push(&mut stream, 0.01, 3.0).flags.contains(Flags::LITTLE_MOVEMENT))
         };

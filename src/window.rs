@@ -30,6 +30,11 @@ impl<const N: usize> Window<N> {
 
     /// Puts `sample` in, in place of the oldest where the ring is full.
     pub fn push(&mut self, sample: Observation) {
+        // A ring of one, which a recursive law has, needs no place to be looked up.
+        if N == 1 {
+            (self.samples, self.len) = ([sample; N], 1);
+            return;
+        }
         if let Some(slot) = self.samples.get_mut(self.next) {
             *slot = sample;
         }
@@ -55,6 +60,9 @@ impl<const N: usize> Window<N> {
 
     /// All samples that it holds.
     pub fn recent(&self) -> Recent<'_> {
+        if N == 1 {
+            return Recent { older: &[], newer: if self.len == 0 { &[] } else { &self.samples } };
+        }
         let (older, newer) = if self.len <= self.next {
             (None, self.samples.get(self.next - self.len..self.next))
         } else if self.next == 0 {
@@ -145,6 +153,18 @@ mod tests {
         let mut seen = Vec::new();
         recent.for_each(|o| seen.push(o.force));
         seen
+    }
+
+    #[test]
+    fn a_ring_of_one_shows_the_latest_sample_alone() {
+        let mut window = Window::<1>::new();
+        assert!(window.is_empty() && window.recent().is_empty());
+        for k in 0..3_u8 {
+            window.push(Observation { force: f32::from(k), ..Observation::default() });
+            assert_eq!((forces(window.recent()), window.len()), (Vec::from([f32::from(k)]), 1));
+        }
+        window.clear();
+        assert!(window.is_empty() && window.recent().newest().is_none());
     }
 
     #[test]

@@ -27,6 +27,20 @@ pub struct ContactDetectorState {
     away: u16,
 }
 
+impl ContactDetectorState {
+    /// There is contact.
+    #[inline(always)]
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// A sample of a contact that goes on: none in a row says otherwise.
+    #[inline(always)]
+    pub(crate) fn stay(&mut self) {
+        self.away = 0;
+    }
+}
+
 impl ContactDetectorConfig {
     /// For the paper's bench: 0.2 N on, 0.05 N off for 5 samples.
     pub const BENCH: Self = Self { on_force: 0.2, off_force: 0.05, off_samples: 5 };

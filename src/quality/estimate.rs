@@ -3,7 +3,9 @@
 use crate::contact::Impedance;
 use crate::error::{ConfigError, require_not_negative};
 use crate::front_end::FrontEnd;
+use crate::math::sym2::Sym2;
 use crate::math::{larger, near_sqrt};
+use crate::quality::confidence::Confidence;
 use crate::quality::flags::Flags;
 use crate::quality::step::Step;
 #[cfg(feature = "serde")]
@@ -111,10 +113,8 @@ impl IntervalEstimator {
     // Inlined: what a law's step holds and no interval needs, is then not even computed.
     #[inline(always)]
     pub fn assess(&self, step: &Step) -> Estimate {
-        let half_width = self.half_width(step);
-        let mut flags = step.flags;
-        flags.set(Flags::FILLING, step.fill < 0.99);
-        flags.set(Flags::NEGATIVE, step.estimate.stiffness < 0.0 || step.estimate.damping < 0.0);
+        let half_width = self.half_width(step.estimate.stiffness, &step.confidence);
+        let mut flags = step.flags | Self::doubts(step.estimate, step.fill);
         let wide = |half_width: f32, value: f32| half_width > Self::MAX_RELATIVE_HALF_WIDTH * value.abs();
         flags.set(Flags::STIFFNESS_UNCERTAIN, wide(half_width.stiffness, step.estimate.stiffness));
         flags.set(Flags::DAMPING_UNCERTAIN, wide(half_width.damping, step.estimate.damping));
@@ -128,15 +128,45 @@ impl IntervalEstimator {
         }
     }
 
-    fn in_si(&self, internal: Impedance) -> Impedance {
+    /// [`Flags::FILLING`] and [`Flags::NEGATIVE`] where they hold: what can be said of an estimate without its interval.
+    #[inline(always)]
+    pub(crate) fn doubts(estimate: Impedance, fill: f32) -> Flags {
+        let mut flags = Flags::empty();
+        flags.set(Flags::FILLING, fill < 0.99);
+        flags.set(Flags::NEGATIVE, estimate.stiffness < 0.0 || estimate.damping < 0.0);
+        flags
+    }
+
+    /// 95 % half-widths in SI of `estimate`, in internal units, by its confidence.
+    pub(crate) fn half_width_in_si(&self, estimate: Impedance, confidence: &Confidence) -> Impedance {
+        self.in_si(self.half_width(estimate.stiffness, confidence))
+    }
+
+    #[inline(always)]
+    pub(crate) fn in_si(&self, internal: Impedance) -> Impedance {
         Impedance { stiffness: internal.stiffness * self.unit.stiffness, damping: internal.damping * self.unit.damping }
     }
 
-    fn half_width(&self, step: &Step) -> Impedance {
-        let c = &step.confidence;
-        let stiffness = step.estimate.stiffness;
+    #[inline(always)]
+    fn half_width(&self, stiffness: f32, c: &Confidence) -> Impedance {
+        let diagonal = |m: Sym2| Impedance { stiffness: m.xx, damping: m.vv };
+        self.widths(stiffness, c.samples, diagonal(c.noise), diagonal(c.noise_gain), c.startup_bias, c.offset_gain)
+    }
+
+    /// The formula of [`IntervalEstimator`] for both parameters. A function of numbers: they come in registers, and no law has the code
+    /// again.
+    #[inline(never)]
+    fn widths(
+        &self,
+        stiffness: f32,
+        samples: f32,
+        noise: Impedance,
+        noise_gain: Impedance,
+        startup_bias: Impedance,
+        offset_gain: Impedance,
+    ) -> Impedance {
         let known = self.force_variance + stiffness * stiffness * self.position_variance;
-        let measured = c.samples / self.correlated_samples - 2.0;
+        let measured = samples / self.correlated_samples - 2.0;
         let t = student_t_975(if self.force_variance > 0.0 {
             larger(measured, Self::KNOWN_NOISE_FREEDOM)
         } else {
@@ -152,8 +182,8 @@ impl IntervalEstimator {
             if width.is_nan() { f32::INFINITY } else { width }
         };
         Impedance {
-            stiffness: width(c.noise.xx, c.noise_gain.xx, c.startup_bias.stiffness, c.offset_gain.stiffness),
-            damping: width(c.noise.vv, c.noise_gain.vv, c.startup_bias.damping, c.offset_gain.damping),
+            stiffness: width(noise.stiffness, noise_gain.stiffness, startup_bias.stiffness, offset_gain.stiffness),
+            damping: width(noise.damping, noise_gain.damping, startup_bias.damping, offset_gain.damping),
         }
     }
 }
@@ -266,7 +296,7 @@ mod tests {
         {
             let estimator = IntervalEstimator { force_variance, ..ESTIMATOR };
             let step = step(samples);
-            let found = estimator.half_width(&step);
+            let found = estimator.half_width(step.estimate.stiffness, &step.confidence);
             let c = &step.confidence;
             let of_k = [c.noise.xx, c.noise_gain.xx, c.startup_bias.stiffness, c.offset_gain.stiffness];
             let of_b = [c.noise.vv, c.noise_gain.vv, c.startup_bias.damping, c.offset_gain.damping];
@@ -282,7 +312,7 @@ mod tests {
         let mut step = step(100.0);
         (step.confidence.noise.xx, step.confidence.noise_gain.xx) = (-0.5, -1.0);
         (step.confidence.noise.vv, step.confidence.noise_gain.vv) = (f32::NAN, f32::NAN);
-        let found = ESTIMATOR.half_width(&step);
+        let found = ESTIMATOR.half_width(step.estimate.stiffness, &step.confidence);
         // The surface alone, 0.95 * 1.25 * 3 * 0.5, and the bias.
         assert!((found.stiffness / (1.781_25 + 0.25) - 1.0).abs() < 1e-6, "{found:?}");
         assert_eq!(found.damping, f32::INFINITY);
@@ -292,7 +322,7 @@ mod tests {
     fn an_estimate_is_told_in_si() {
         let step = step(100.0);
         let found = ESTIMATOR.assess(&step);
-        let half = ESTIMATOR.half_width(&step);
+        let half = ESTIMATOR.half_width(step.estimate.stiffness, &step.confidence);
         assert_eq!(found.impedance, Impedance { stiffness: 6.0, damping: -2.0 });
         let expected = Impedance { stiffness: 2.0 * half.stiffness, damping: 4.0 * half.damping };
         assert_eq!((found.half_width, found.innovation), (expected, 6.0));

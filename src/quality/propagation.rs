@@ -48,6 +48,14 @@ impl UncertaintyPropagation {
     /// measured and the samples are counted.
     #[inline(always)]
     pub fn advance(&mut self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) {
+        if let Some(next) = self.after(o, gain, innovation, forgetting) {
+            *self = next;
+        }
+    }
+
+    /// As [`Self::advance`] leaves it; `None` where that is beyond the range of single precision and is not taken.
+    #[inline(always)]
+    fn after(&self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) -> Option<Self> {
         let (x, v) = (o.penetration, o.rate);
         let map = [
             Impedance { stiffness: 1.0 - gain.stiffness * x, damping: -gain.stiffness * v },
@@ -68,9 +76,7 @@ impl UncertaintyPropagation {
             regressors: self.regressors.scaled(forgetting).plus_outer(1.0, x, v),
             weight: forgetting * self.weight + 1.0,
         };
-        if next.is_finite() {
-            *self = next;
-        }
+        next.is_finite().then_some(next)
     }
 
     /// By their sum, which is finite only where each is; and a sum beyond the range is as good as a sign of that.
@@ -118,6 +124,40 @@ impl UncertaintyPropagation {
         Impedance { stiffness, damping: f32::INFINITY }
     }
 
+    /// Takes the update that has led from `o` to `estimate`, and tells its outcome.
+    #[inline(always)]
+    pub(crate) fn advance_to(
+        &mut self,
+        estimate: Impedance,
+        o: &Observation,
+        gain: Impedance,
+        innovation: f32,
+        forgetting: f32,
+        flags: Flags,
+    ) -> Step {
+        match self.after(o, gain, innovation, forgetting) {
+            Some(next) => {
+                *self = next;
+                // Of what is at hand, and not of what was stored.
+                next.step(estimate, innovation, forgetting, flags)
+            }
+            None => self.step_unmoved(estimate, innovation, forgetting, flags),
+        }
+    }
+
+    /// [`Self::step`], apart: as one of two ways to the same numbers it would cost the other a move of each.
+    #[cold]
+    #[inline(never)]
+    fn step_unmoved(&self, estimate: Impedance, innovation: f32, forgetting: f32, flags: Flags) -> Step {
+        self.step(estimate, innovation, forgetting, flags)
+    }
+
+    /// Share of the memory of `forgetting` that is filled.
+    #[inline(always)]
+    pub(crate) fn fill(&self, forgetting: f32) -> f32 {
+        smaller(self.weight * (1.0 - forgetting), 1.0)
+    }
+
     /// The outcome of the update that has just advanced it and led to `estimate`.
     #[inline(always)]
     pub(crate) fn step(&self, estimate: Impedance, innovation: f32, forgetting: f32, flags: Flags) -> Step {
@@ -125,7 +165,7 @@ impl UncertaintyPropagation {
             estimate,
             innovation,
             confidence: self.confidence(estimate),
-            fill: smaller(self.weight * (1.0 - forgetting), 1.0),
+            fill: self.fill(forgetting),
             excitation: self.regressors.independence(),
             flags,
         }

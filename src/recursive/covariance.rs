@@ -101,6 +101,12 @@ impl Covariance {
     pub(crate) fn is_plain(&self, limit: f32) -> bool {
         self.d1 + self.d2 <= limit && self.d1 * self.d2 > 0.0
     }
+
+    /// The same with a limit of its own, which is finite, for the factor of each parameter, as [`Self::limit_each`] has.
+    #[inline(always)]
+    pub(crate) fn is_plain_each(&self, limits: Impedance) -> bool {
+        self.d1 <= limits.stiffness && self.d2 <= limits.damping && self.d1 * self.d2 > 0.0
+    }
 }
 
 #[cfg(test)]

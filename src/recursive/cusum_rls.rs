@@ -96,18 +96,58 @@ impl CusumRls {
         if changed {
             *state = self.from(state.recursion.estimate, state.change);
         }
+        let mut flags = if changed { Flags::CHANGED } else { Flags::empty() };
         let mut covariance = state.recursion.covariance;
         let gain = covariance.observe_with(o, self.config.forgetting_factor, self.growth);
+        if !state.recursion.commit_plain_each(gain, innovation, covariance, self.limits) {
+            flags |= self.commit_limited(state, gain, innovation, covariance);
+        }
+        (innovation, gain, flags)
+    }
+
+    /// Takes the outcome of an update where the covariance has to be limited, or begins anew.
+    #[cold]
+    #[inline(never)]
+    fn commit_limited(
+        &self,
+        state: &mut CusumRlsState,
+        gain: Impedance,
+        innovation: f32,
+        mut covariance: Covariance,
+    ) -> Flags {
         let limited = covariance.limit_each(self.limits);
         let mut flags = state.recursion.commit_or(gain, innovation, covariance, self.prior());
         flags.set(Flags::LIMITED, limited);
-        flags.set(Flags::CHANGED, changed);
-        (innovation, gain, flags)
+        flags
     }
 
     /// Updates the estimate and its covariance by one observation without its uncertainty: as [`crate::Ewrls::update_estimate`].
     pub fn update_estimate(&self, state: &mut CusumRlsState, o: &Observation) -> f32 {
         self.advance(state, o).0
+    }
+}
+
+/// Beyond the range of single precision there is no confidence.
+#[inline(always)]
+fn limit_confidence(c: &mut Confidence) {
+    if (c.noise.xx + c.noise_gain.xx).is_nan() {
+        *c = Confidence::NONE;
+    }
+}
+
+impl CusumRls {
+    /// As [`UpdateLaw::update`] with `o`, but [`Self::confidence`] is not told: the fill, and the flags.
+    #[inline(always)]
+    pub(crate) fn learn(&self, state: &mut CusumRlsState, o: &Observation) -> (f32, Flags) {
+        let (innovation, gain, flags) = self.advance(state, o);
+        (state.recursion.propagate(o, gain, innovation, self.config.forgetting_factor), flags)
+    }
+
+    /// The confidence in the present estimate: that of the [`Step`] that [`UpdateLaw::update`] returned, or would have returned.
+    pub fn confidence(&self, state: &CusumRlsState) -> Confidence {
+        let mut confidence = state.recursion.confidence();
+        limit_confidence(&mut confidence);
+        confidence
     }
 }
 
@@ -130,10 +170,9 @@ impl UpdateLaw for CusumRls {
     fn update(&self, state: &mut CusumRlsState, recent: Recent<'_>) -> Step {
         let o = recent.newest().unwrap_or_default();
         let (innovation, gain, flags) = self.advance(state, &o);
-        let step = state.recursion.step(&o, gain, innovation, self.config.forgetting_factor, flags);
-        // Beyond the range of single precision there is no confidence.
-        let c = &step.confidence;
-        if (c.noise.xx + c.noise_gain.xx).is_nan() { Step { confidence: Confidence::NONE, ..step } } else { step }
+        let mut step = state.recursion.step(&o, gain, innovation, self.config.forgetting_factor, flags);
+        limit_confidence(&mut step.confidence);
+        step
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::contact::{Impedance, Observation};
 use crate::error::{ConfigError, require, require_positive};
 use crate::math::smaller;
+use crate::quality::Confidence;
 use crate::quality::Flags;
 use crate::quality::Step;
 use crate::quality::UncertaintyPropagation;
@@ -84,10 +85,27 @@ impl RecursiveState {
         covariance: Covariance,
         limit: f32,
     ) -> bool {
+        self.commit_where(covariance.is_plain(limit), gain, innovation, covariance)
+    }
+
+    /// The same with a limit of its own for the factor of each parameter.
+    #[inline(always)]
+    pub(crate) fn commit_plain_each(
+        &mut self,
+        gain: Impedance,
+        innovation: f32,
+        covariance: Covariance,
+        limits: Impedance,
+    ) -> bool {
+        self.commit_where(covariance.is_plain_each(limits), gain, innovation, covariance)
+    }
+
+    #[inline(always)]
+    fn commit_where(&mut self, plain: bool, gain: Impedance, innovation: f32, covariance: Covariance) -> bool {
         let estimate = self.estimate.moved(innovation, gain);
         // A sum that is finite has no part that is not. The other two factors of a plain covariance are finite.
         let total = estimate.stiffness + estimate.damping + covariance.off_diagonal();
-        let plain = covariance.is_plain(limit) && total.is_finite();
+        let plain = plain && total.is_finite();
         if plain {
             (self.estimate, self.covariance) = (estimate, covariance);
         }
@@ -105,8 +123,22 @@ impl RecursiveState {
         flags: Flags,
     ) -> Step {
         let forgetting = smaller(forgetting, MAX_FORGETTING);
+        self.uncertainty.advance_to(self.estimate, o, gain, innovation, forgetting, flags)
+    }
+}
+
+impl RecursiveState {
+    /// [`Self::step`] without its outcome: the fill.
+    #[inline(always)]
+    pub(crate) fn propagate(&mut self, o: &Observation, gain: Impedance, innovation: f32, forgetting: f32) -> f32 {
+        let forgetting = smaller(forgetting, MAX_FORGETTING);
         self.uncertainty.advance(o, gain, innovation, forgetting);
-        self.uncertainty.step(self.estimate, innovation, forgetting, flags)
+        self.uncertainty.fill(forgetting)
+    }
+
+    /// The confidence in the present estimate.
+    pub(crate) fn confidence(&self) -> Confidence {
+        self.uncertainty.confidence(self.estimate)
     }
 }
 

@@ -254,6 +254,11 @@ fn three_parameters(recording: &Recording, gauge: &mut Gauge) -> Result<(), Faul
     let mut cusum = Identifier::<_, 1>::new(recording.config.stream, cusum).map_err(unsound)?;
     whole(recording, gauge, "identify_cusum_rls", 0, size_of_val(&cusum), |sample| {
         black_box(cusum.update(sample).is_ok());
+    })?;
+    // The same where nobody asks for the interval.
+    let mut cusum = Identifier::recommended(recording.config.stream).map_err(unsound)?;
+    whole(recording, gauge, "identify_cusum_rls_alone", 0, size_of_val(&cusum), |sample| {
+        let _ = black_box(cusum.update_estimate(sample));
     })
 }
 
