@@ -37,7 +37,7 @@ fn no_panic_can_be_reached_from_either_interrupt_of_the_drive() {
 const MAX_INSTRUCTIONS: u32 = 6_000;
 
 /// Instructions of the median tick that takes a sample, from its words to a report with estimate, intervals and flags.
-const MAX_LIVE_INSTRUCTIONS: u32 = 1_400;
+const MAX_LIVE_INSTRUCTIONS: u32 = 1_300;
 
 #[test]
 fn the_longest_tick_is_counted_and_leaves_room_for_a_current_loop() {
