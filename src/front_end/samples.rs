@@ -502,9 +502,10 @@ mod tests {
                 let [mut shortest, mut short, mut long] = [FrontEndState::default(); 3];
                 let mut in_contact = 0;
                 for k in 0..400_u16 {
-                    // In and out of the surface, and above and below the thresholds of force.
+                    // In and out of the surface; within it none to six samples in a row below the threshold, of which five end a contact.
                     let phase = f32::from(k % 50) / 50.0 - 0.2;
-                    let mut sample = Sample { position: 1.0 + 0.01 * phase, force: 2.0 * phase, elapsed: 1e-3 };
+                    let force = if k % 11 < k / 50 % 7 { 0.0 } else { 1.0 + phase };
+                    let mut sample = Sample { position: 1.0 + 0.01 * phase, force, elapsed: 1e-3 };
                     match k % 37 {
                         5 => sample.position = f32::NAN,
                         11 => sample.position = 3e6,
