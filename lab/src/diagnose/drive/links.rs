@@ -17,7 +17,7 @@ const STRETCH_ROWS: usize = 5000;
 
 /// Frequencies of the link under all of the inertia that are tried, Hz; only those that the rows can follow.
 const COMPLIANCE_HZ: [f64; 3] = [6.0, 15.0, 40.0];
-const PLAY_HZ: [f64; 2] = [60.0, 150.0];
+const PLAY_HZ: [f64; 3] = [25.0, 60.0, 150.0];
 const FASTEST_PER_ROW: f64 = 0.3;
 
 /// The narrowest gap that is tried, in steps of the encoder, the factor to the next, and the widest, as a part of the travel.
@@ -37,6 +37,15 @@ const COMPLIANCE_DAMPING: f64 = 0.05;
 /// Chosen; with all of it a play of 2 mm is a weak link in the test of `outcome`.
 const QUIET: f64 = 1e-3;
 
+/// That density of a play, and the share of the viscous friction on its load. With a disturbance of less than the strikes leave, and some
+/// friction on the load, the likelihood has one maximum over the gap where it has dozens with a louder one, which lets the filter strike
+/// at every row that suits it (seen on a gear of 24 mrad, between 1e-3 and 1e-4); a load that flies on is found from the other.
+const PLAY_STARTS: [(f64, f64); 2] = [(QUIET, 0.0), (QUIETEST, 0.5)];
+const QUIETEST: f64 = 1e-4;
+
+/// Plays that are led on by steps before their slopes are searched along.
+const LED: usize = 3;
+
 /// Starts that are followed to their end, and the turns that takes.
 const FOLLOWED: usize = 4;
 const TURNS: usize = 4;
@@ -47,7 +56,8 @@ const STEPS: usize = 6;
 pub fn found(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>], sides: &[Side]) -> Vec<Fit> {
     let trials = [liveliest(data, disturbance)];
     let short = Data { trials: &trials, ..*data };
-    let mut fits: Vec<Fit> = starts(&short, base, sides).into_par_iter().map(|start| turn(&short, start)).collect();
+    let begun = led(&short, starts(&short, base, sides));
+    let mut fits: Vec<Fit> = begun.into_par_iter().map(|start| turn(&short, start)).collect();
     fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     fits.truncate(2 * FOLLOWED);
     let followed = |mut fit: Fit| {
@@ -72,50 +82,76 @@ pub fn found(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>], sides: &[Sid
     best
 }
 
+/// `starts`, and the likeliest of their quietest plays led on to the likeliest around each.
+fn led(data: &Data<'_>, starts: Vec<Fit>) -> Vec<Fit> {
+    let mut others = starts;
+    let is_play = |fit: &&Fit| fit.model.has("backlash");
+    let quietest = others.iter().filter(is_play).map(|fit| fit.noise.ln_disturbance).fold(f64::INFINITY, f64::min);
+    let is_quiet = |fit: &&Fit| fit.noise.ln_disturbance <= quietest;
+    let mut plays: Vec<Fit> = others.iter().filter(is_play).filter(is_quiet).cloned().collect();
+    plays.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
+    plays.truncate(LED);
+    others.extend(plays.into_par_iter().map(|play| likelier_around(data, &play)).collect::<Vec<_>>());
+    others
+}
+
+/// `play` with no less of a disturbance than a search for one begins with, beside what `rigid` leaves: with none at all its load flies on from the
+/// first strike that is wrong, and no step from there gains.
+#[must_use]
+pub fn roused(play: &Fit, rigid: &Fit) -> Fit {
+    let mut fit = play.clone();
+    fit.noise.ln_disturbance = fit.noise.ln_disturbance.max(rigid.noise.ln_disturbance + QUIETEST.ln());
+    fit
+}
+
 fn turn(data: &Data<'_>, mut fit: Fit) -> Fit {
     fit.ended = search_values(data, &fit.model, &mut fit.values, &fit.noise, STEPS);
     fit.log_likelihood = search_noise(data, &fit.model, &fit.values, &mut fit.noise);
     fit
 }
 
-/// Steps of the search about a play: of the logarithms of stiffness and gap, and of the load's shares; and the part of them at which it ends.
-const STIFFNESS_STEP: f64 = 0.7;
-const GAP_STEP: f64 = 0.15;
-const SHARE_STEP: f64 = 0.1;
+/// Steps of the search about a play: of the logarithms of inertia, viscous friction, stiffness, damping and gap, and of the load's shares
+/// of inertia and friction; and the part of them at which it ends.
+const STEPS_AROUND: [f64; 7] = [0.05, 0.3, 0.7, 0.7, 0.15, 0.1, 0.2];
 const LEAST_STEP: f64 = 0.1;
 
-/// Rounds of that search at most, six likelihoods each, and the gain of one, nats, below which it takes shorter steps.
+/// Rounds of that search at most, two likelihoods each for every step, and the gain of one, nats, below which it takes shorter steps.
 const MOST_ROUNDS: usize = 30;
 const LEAST_GAIN: f64 = 1.0;
 
-/// A likelier play near `play`, its last term, if there is one: steps along each direction, halved when none of them gains (generating set
-/// search: T. G. Kolda, R. M. Lewis, V. Torczon, *SIAM Review* 45, 2003, 385). The likelihood has a maximum for every order in which the
-/// sides strike, and a search by its slope ends in the nearest.
+/// A likelier play near `play`, its last term, if there is one, its noise held: steps along each direction,
+/// halved when none of them gains (generating set search: T. G. Kolda, R. M. Lewis, V. Torczon, *SIAM Review* 45, 2003, 385). The
+/// likelihood has a corner wherever the sides strike at another row, and a search by its slope ends in the nearest.
 #[must_use]
 pub fn likelier_around(data: &Data<'_>, play: &Fit) -> Fit {
     let first = play.model.values_of(play.model.terms.len() - 1).start;
     let ranges = play.model.ranges();
-    let moved = |from: &Fit, [stiffness, share, gap]: [f64; 3]| {
+    let moved = |from: &Fit, [inertia, viscous, stiffness, damping, gap, share, friction]: [f64; 7]| {
         let mut fit = from.clone();
+        fit.values[index::INERTIA] *= inertia.exp();
+        fit.values[index::VISCOUS] *= viscous.exp();
         let own = &mut fit.values[first..];
         own[0] *= stiffness.exp();
-        own[1] *= (0.5 * stiffness).exp();
+        own[1] *= (0.5 * stiffness + damping).exp();
         own[2] += share;
         own[3] *= gap.exp();
-        own[4] += share;
-        own.iter_mut().zip(&ranges[first..]).for_each(|(value, range)| *value = value.clamp(range.low, range.high));
+        own[4] += friction;
+        fit.values.iter_mut().zip(&ranges).for_each(|(value, range)| *value = value.clamp(range.low, range.high));
         fit.log_likelihood = data.log_likelihood(&fit.model, &fit.values, &fit.noise).0;
         fit
     };
-    let mut best = play.clone();
+    let mut best = moved(play, [0.0; 7]);
     let mut part = 1.0;
     for _ in 0..MOST_ROUNDS {
         if part <= LEAST_STEP {
             break;
         }
-        let [k, s, g] = [STIFFNESS_STEP, SHARE_STEP, GAP_STEP].map(|step| part * step);
-        let directions = [[k, 0.0, 0.0], [-k, 0.0, 0.0], [0.0, s, 0.0], [0.0, -s, 0.0], [0.0, 0.0, g], [0.0, 0.0, -g]];
-        let tried: Vec<Fit> = directions.into_par_iter().map(|direction| moved(&best, direction)).collect();
+        let tried = (0..2 * STEPS_AROUND.len()).into_par_iter().map(|at| {
+            let mut along = [0.0; STEPS_AROUND.len()];
+            along[at / 2] = if at % 2 == 0 { part } else { -part } * STEPS_AROUND[at / 2];
+            moved(&best, along)
+        });
+        let tried: Vec<Fit> = tried.collect();
         let top = tried.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
         match top.filter(|top| top.log_likelihood > best.log_likelihood + LEAST_GAIN) {
             Some(top) => best = top,
@@ -139,23 +175,30 @@ fn starts(data: &Data<'_>, base: &Fit, sides: &[Side]) -> Vec<Fit> {
         let flanks: Vec<f64> = PLAY_HZ.into_iter().filter(|hz| is_slow_enough(*hz)).collect();
         if !flanks.is_empty() {
             let gaps: Vec<f64> = gaps(scales).collect();
-            all.extend(
-                gaps.par_chunks(GAPS_OF_BAND)
-                    .filter_map(|band| likeliest_play(data, base, *side, &flanks, band))
-                    .collect::<Vec<_>>(),
-            );
+            for (density, friction_share) in PLAY_STARTS {
+                let likeliest =
+                    |band: &[f64]| likeliest_play(data, base, *side, &flanks, band, density, friction_share);
+                all.extend(gaps.par_chunks(GAPS_OF_BAND).filter_map(likeliest).collect::<Vec<_>>());
+            }
         }
     }
     all
 }
 
-/// The likeliest play of a band of gaps, as it begins. A load that flies across its play strikes at another row for another gap, so the
-/// likelihood has a maximum every few tenths of the gap, and a search ends in the nearest.
-fn likeliest_play(data: &Data<'_>, base: &Fit, side: Side, flanks: &[f64], band: &[f64]) -> Option<Fit> {
+/// The likeliest play of a band of gaps, as it begins.
+fn likeliest_play(
+    data: &Data<'_>,
+    base: &Fit,
+    side: Side,
+    flanks: &[f64],
+    band: &[f64],
+    density: f64,
+    friction_share: f64,
+) -> Option<Fit> {
     let begun = |gap: f64, hz: f64, damping: f64| {
-        let [stiffness, damping, share, friction_share] = link(base, hz, damping);
+        let [stiffness, damping, share, _] = link(base, hz, damping);
         let own = vec![stiffness, damping, share, gap, friction_share];
-        let mut fit = begun(base, Term::Play(side), own, QUIET);
+        let mut fit = begun(base, Term::Play(side), own, density);
         fit.log_likelihood = data.log_likelihood(&fit.model, &fit.values, &fit.noise).0;
         fit
     };

@@ -353,6 +353,18 @@ mod tests {
         assert!((left / outcome.expected_noise - 1.0).abs() < 0.3, "{left} {}", outcome.expected_noise);
     }
 
+    /// A gear that swings at 25 Hz on its flanks: a search with a louder disturbance ends at another gap, or in a lag of the effort.
+    #[test]
+    fn a_play_with_soft_flanks_is_named_with_its_gap_and_its_stiffness() {
+        let link = TestLink { stiffness: 4700.0, damping: 2.2, play: 3e-3, load_share: 0.55, friction_share: 0.4 };
+        let outcome = identified(&TestDrive { link: Some(link), ..TestDrive::PLAIN }, 0.82, 4.3, 63);
+        assert_eq!(outcome.chosen.model.names(), ["backlash"]);
+        let own = outcome.chosen.model.values_of(0);
+        let values = &outcome.chosen.values[own];
+        // Three hundred times the encoder's step, seen some forty times: a hundredth is far beyond its noise.
+        assert!((values[3] / 3e-3 - 1.0).abs() < 0.01 && (values[0] / 4700.0 - 1.0).abs() < 0.02, "{values:?}");
+    }
+
     #[test]
     fn a_weak_link_is_told_with_the_friction_of_its_load() {
         let link = TestLink { stiffness: 1200.0, damping: 1.3, play: 0.0, load_share: 0.4, friction_share: 0.7 };

@@ -203,13 +203,13 @@ impl Search<'_> {
     }
 
     /// The same of a link that was looked for on a stretch; a play that is likelier than the `likeliest` rigid law is looked for around
-    /// where that ends, too.
+    /// where that ends, too: all rows hold more strikes than the stretch.
     fn polished_link(&self, start: &Fit, likeliest: f64) -> Fit {
         let fit = self.polished(start);
         if !fit.model.has("backlash") || fit.log_likelihood < likeliest {
             return fit;
         }
-        let around = self.polished(&links::likelier_around(&self.data, &fit));
+        let around = self.polished(&links::likelier_around(&self.data, &links::roused(&fit, &self.nominal)));
         if around.log_likelihood > fit.log_likelihood { around } else { fit }
     }
 
