@@ -69,7 +69,7 @@ struct OneJoint<'a> {
 /// All joints as JSON: `joints`, each with its name `joint` and its `diagnosis` as `palpate diagnose --json` writes it.
 ///
 /// # Errors
-/// Never with a diagnosis that [`diagnose`] made.
+/// Never with a diagnosis that [`diagnose()`] made.
 pub fn json(arm: &[DiagnosedJoint]) -> Result<String> {
     let joints = arm.iter().map(|joint| OneJoint { joint: &joint.name, diagnosis: &joint.found.answer }).collect();
     let text = serde_json::to_string_pretty(&Joints { schema: SCHEMA, joints });
@@ -79,7 +79,7 @@ pub fn json(arm: &[DiagnosedJoint]) -> Result<String> {
 /// The page of all joints.
 ///
 /// # Errors
-/// Never with a diagnosis that [`diagnose`] made.
+/// Never with a diagnosis that [`diagnose()`] made.
 pub fn page(arm: &[DiagnosedJoint]) -> Result<String> {
     let mut page = Vec::new();
     page::write(arm, &mut page)?;

@@ -17,7 +17,7 @@ use crate::terminal::printable;
 /// Diagnose each joint of an arm, in one report
 #[derive(Debug, Clone, Args)]
 pub struct DiagnoseJointsArgs {
-    /// A joint and its rig file, whose [columns] name what of the recordings is this joint's
+    /// A joint and its rig file, whose `[columns]` name what of the recordings is this joint's
     #[arg(long = "joint", required = true, value_name = "NAME=RIG.toml", value_parser = joint_argument)]
     pub joints: Vec<(String, PathBuf)>,
     /// Recordings of the arm, one file a trial
