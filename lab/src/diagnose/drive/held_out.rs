@@ -87,30 +87,16 @@ pub fn rms(columns: &[Vec<f64>]) -> f64 {
 mod tests {
     use super::super::fit::{Effort, fit};
     use super::super::model::Model;
-    use super::super::term::{Scales, Term};
+    use super::super::term::Term;
     use super::*;
-    use crate::diagnose::drive::testing::TestDrive;
+    use crate::diagnose::drive::testing::{SCALES, TestDrive};
 
     /// A load that is there in the first of two trials alone: values of the other half know nothing of it.
     #[test]
     fn what_lives_in_one_half_is_not_taken_from_it_by_the_other() {
         let trials = [TestDrive { load: 0.3, ..TestDrive::PLAIN }.trial(3.0, 1), TestDrive::PLAIN.trial(3.0, 2)];
         let data = Data { trials: &trials, least_encoder_variance: 1e-12 };
-        let scales = Scales {
-            effort: 2.0,
-            peak_effort: 5.0,
-            speed: 0.2,
-            travel: 0.05,
-            lowest: -0.025,
-            period_s: 1e-3,
-            latest_effort_s: 0.02,
-            duration_s: 3.0,
-            inertia: 0.8,
-            viscous: 4.0,
-            resolution: 1e-5,
-            is_rotary: false,
-        };
-        let model = Model { terms: vec![Term::ConstantLoad], scales };
+        let model = Model { terms: vec![Term::ConstantLoad], scales: SCALES };
         let noise = Noise { ln_disturbance: (1e-5f64).ln(), ln_encoder: (25e-12f64).ln() };
         let whole = fit(&data, &model, &[0.8, 4.0, 0.0, 0.15], noise, Effort::FULL);
         let common = noise.with_crossing(15.0, 1e-3, 0.8);

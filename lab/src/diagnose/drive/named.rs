@@ -99,26 +99,13 @@ mod tests {
     use super::super::noise::Noise;
     use super::*;
     use crate::diagnose::drive::fit::Ended;
+    use crate::diagnose::drive::testing::SCALES;
 
     /// The stiffness of a play's flanks is fitted like its gap: an interval without width would be a claim that nothing backs.
     #[test]
     fn every_value_of_a_play_has_the_interval_of_its_fit() {
-        let scales = Scales {
-            effort: 2.0,
-            peak_effort: 5.0,
-            speed: 0.2,
-            travel: 0.05,
-            lowest: -0.025,
-            period_s: 1e-3,
-            latest_effort_s: 0.02,
-            duration_s: 3.0,
-            inertia: 0.8,
-            viscous: 4.0,
-            resolution: 1e-5,
-            is_rotary: false,
-        };
         let fit = Fit {
-            model: Model { terms: vec![Term::Play(Side::Motor)], scales },
+            model: Model { terms: vec![Term::Play(Side::Motor)], scales: SCALES },
             values: vec![0.8, 4.0, 0.0, 4e4, 30.0, 0.6, 2e-4, 0.7],
             noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
             log_likelihood: 0.0,

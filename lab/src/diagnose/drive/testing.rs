@@ -4,7 +4,24 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::term::Scales;
 use super::trial::DriveTrial;
+
+/// Sizes of a recording of [`TestDrive::PLAIN`], by and large.
+pub const SCALES: Scales = Scales {
+    effort: 2.0,
+    peak_effort: 5.0,
+    speed: 0.2,
+    travel: 0.05,
+    lowest: -0.025,
+    period_s: 1e-3,
+    latest_effort_s: 0.02,
+    duration_s: 3.0,
+    inertia: 0.8,
+    viscous: 4.0,
+    resolution: 1e-5,
+    is_rotary: false,
+};
 
 /// A drive under a position controller that ticks once a row.
 pub struct TestDrive {
