@@ -32,7 +32,7 @@ fn card(physics: &Physics, only: bool) -> Markup {
             @if !physics.equation.is_empty() { p.equation { (physics.equation.replace("<=", "≤").replace(">=", "≥")) } }
             @if !physics.parameters.is_empty() {
                 dl.values { @for value in &physics.parameters { (parameter(&physics.name, value)) } }
-                p.fine { "± and ranges span 95 %, widened for the residual that remains and for the disagreement between halves of the recordings." }
+                p.fine { "± and ranges span 95 %, and are widened by how far values move where stretches of the recordings are left out." }
             }
             @if !unknown { p.fine { (evidence(physics, only)) } }
             @if let Some(regressor) = &physics.on_drive {
