@@ -93,7 +93,7 @@ def play(xml, trial, seed, friction=None, module=None):
 
 
 def with_loads(xml, rows):
-    """The rows with the load of each joint beside them: its mean over the row, as the effort is held from row to row."""
+    """The rows with the load of each joint beside them."""
     model = mujoco.MjModel.from_xml_string(xml)
     model.dof_armature[:], model.dof_damping[:] = 0.0, 0.0
     data = mujoco.MjData(model)
@@ -103,10 +103,9 @@ def with_loads(xml, rows):
         data.qpos[:], data.qvel[:], data.qacc[:] = q[row], v[row], a[row]
         mujoco.mj_inverse(model, data)
         loads[row] = data.qfrc_inverse
-    means = np.vstack([(loads[1:] + loads[:-1]) / 2, loads[-1:]])
     # At its ends the mirror image turns the acceleration over: what the filter reaches there is left out.
     ends = slice(RATE_HZ // 5, -RATE_HZ // 5)
-    return np.column_stack([rows, means])[ends]
+    return np.column_stack([rows, loads])[ends]
 
 
 def smoothed(positions, order):

@@ -137,34 +137,20 @@ pub fn export(args: &ExportArgs) -> Result<Exported, InputError> {
     let rig = Rig::read(&args.improved)?;
     let origin = args.improved.display().to_string();
     let source = args.improved.file_name().map_or_else(|| origin.clone(), |name| name.to_string_lossy().into_owned());
-    let (beside_load, effects): (Vec<_>, Vec<_>) = found_effect::all(&rig, &origin)?
-        .into_iter()
-        .partition(|effect| rig.columns.load.is_some() && is_of_effort(effect));
+    let effects = found_effect::all(&rig, &origin)?;
     let nominal = args.nominal.as_deref().map(Rig::read).transpose()?;
     let export = Export { rig: &rig, source, effects, nominal, args };
     let model = read_text(&args.into)?;
-    let mut exported = match args.to {
+    let exported = match args.to {
         Target::Mjcf => mjcf::export(&export, &model)?,
         Target::Python => python_stepper::export(&export, &model)?,
         Target::Urdf | Target::Sdf | Target::Drake => description::export(&export, &model)?,
     };
-    exported
-        .refused
-        .extend(beside_load.iter().map(|effect| Refused { name: effect.name, reason: BESIDE_LOAD.to_owned() }));
     if args.partial || exported.refused.is_empty() {
         return Ok(exported);
     }
     Err(refusal(&exported, args, &origin))
 }
-
-/// Whether an effect is one of the actuator's own effort.
-fn is_of_effort(effect: &FoundEffect) -> bool {
-    matches!(effect.name, "effort_saturation" | "effort_lag")
-}
-
-/// The drive is diagnosed on the effort less the load.
-const BESIDE_LOAD: &str =
-    "it was found in the effort less the recorded load, and the model's actuator gives the whole effort";
 
 /// All that the format cannot say, as one error.
 fn refusal(exported: &Exported, args: &ExportArgs, origin: &str) -> InputError {

@@ -70,6 +70,8 @@ pub struct Drive {
     pub viscous: f64,
     /// On which side of the transmission the position is measured; `None`: not known.
     pub encoder: Option<TransmissionSide>,
+    /// What the column of the load is multiplied by before it is taken off the effort, above zero; 1 where the rig file says nothing.
+    pub load_scale: f64,
 }
 
 /// A side of the transmission.

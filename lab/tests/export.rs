@@ -159,11 +159,9 @@ fn a_contact_is_a_rig_file_within_the_stepper() {
 }
 
 #[test]
-fn a_limit_of_the_effort_less_a_load_is_none_of_the_actuator() {
+fn a_limit_of_the_effort_beside_a_load_is_the_actuators() {
     let limit = "[[effect]]\nname = \"effort_saturation\"\nlimit_n = 6.0\n[columns]\nload = \"inverse_dynamics\"\n";
-    refuses("mjcf", MJCF, limit, &[], &["effort_saturation", "less the recorded load"]);
-    refuses("urdf", URDF, limit, &[], &["effort_saturation", "less the recorded load"]);
-    assert!(!exported("mjcf", MJCF, limit, &["--partial"]).contains("forcerange"));
+    assert!(exported("mjcf", MJCF, limit, &[]).contains("forcerange=\"-3 3\""));
 }
 
 #[test]

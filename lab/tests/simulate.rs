@@ -7,7 +7,7 @@ use palpate_lab::reference::BENCH;
 use palpate_lab::rig::{Contact, Drive, Rig};
 use palpate_lab::simulate::{SimulateArgs, Trial, run, simulate};
 
-const DRIVE: Drive = Drive { inertia: 0.45, viscous: 2.0, encoder: None };
+const DRIVE: Drive = Drive { inertia: 0.45, viscous: 2.0, encoder: None, load_scale: 1.0 };
 const SURFACE: Contact = Contact { surface: 0.0, stiffness: 3000.0, damping: 6.0, bilateral: false };
 
 /// The contract's example rig, as its author would write it.

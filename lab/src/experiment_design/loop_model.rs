@@ -80,7 +80,7 @@ impl LoopModel {
         let opposing = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<f64>>();
         let columns: [&[f64]; 4] = [&error, &error_rate, &opposing(&acceleration), &opposing(&velocity)];
         let fitted = least_squares(&columns, &smoothed(trial.force.as_ref()?, width))?;
-        let drive = Drive { inertia: fitted[2], viscous: fitted[3].max(0.0), encoder: None };
+        let drive = Drive { inertia: fitted[2], viscous: fitted[3].max(0.0), encoder: None, load_scale: 1.0 };
         // What swings within some rows was fitted to rounding: no sampled loop does.
         let is_shown = fitted[0] > 0.0
             && fitted[2] > 0.0
@@ -101,15 +101,19 @@ impl LoopModel {
             effort_saturation: f64::INFINITY,
             rate_hz,
         };
-        Self { drive: Drive { inertia, viscous: 0.0, encoder: None }, control, rate_hz }
+        Self { drive: Drive { inertia, viscous: 0.0, encoder: None, load_scale: 1.0 }, control, rate_hz }
     }
 
     /// A loop of the usual bandwidth.
     fn suitable(rig: &Rig, rate_hz: f64) -> Self {
         let bandwidth = DEFAULT_BANDWIDTH_RAD_S.min(0.05 * rate_hz * std::f64::consts::TAU);
         let contact = rig.contact.map_or(1.0, |contact: Contact| contact.stiffness.max(f64::MIN_POSITIVE));
-        let drive =
-            rig.drive.unwrap_or(Drive { inertia: contact / (bandwidth * bandwidth), viscous: 0.0, encoder: None });
+        let drive = rig.drive.unwrap_or(Drive {
+            inertia: contact / (bandwidth * bandwidth),
+            viscous: 0.0,
+            encoder: None,
+            load_scale: 1.0,
+        });
         let control = Control {
             proportional: drive.inertia * bandwidth * bandwidth,
             derivative: 2.0 * DEFAULT_DAMPING_RATIO * drive.inertia * bandwidth,

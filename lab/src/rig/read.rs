@@ -78,6 +78,7 @@ fn drive(table: Table<'_>) -> Result<Option<Drive>, InputError> {
         inertia: table.needed(words::INERTIA, Range::Positive)?,
         viscous: table.needed(words::VISCOUS, Range::NotNegative)?,
         encoder: encoder(&table)?,
+        load_scale: table.number(words::LOAD_SCALE, Range::Positive)?.unwrap_or(1.0),
     };
     table.done()?;
     Ok(Some(drive))

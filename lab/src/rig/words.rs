@@ -5,6 +5,7 @@ use super::coordinate::Word;
 pub const INERTIA: Word = Word::new("mass_kg", "inertia_kg_m2");
 pub const VISCOUS: Word = Word::new("viscous_n_s_m", "viscous_n_m_s_rad");
 pub const ENCODER: Word = Word::same("encoder");
+pub const LOAD_SCALE: Word = Word::same("load_scale");
 pub const SURFACE: Word = Word::new("surface_m", "surface_rad");
 pub const STIFFNESS: Word = Word::new("stiffness_n_m", "stiffness_n_m_rad");
 pub const DAMPING: Word = Word::new("damping_n_s_m", "damping_n_m_s_rad");

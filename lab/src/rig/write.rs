@@ -44,6 +44,7 @@ fn nominal(page: &mut Page, rig: &Rig) {
                 (words::INERTIA, number(drive.inertia)),
                 (words::VISCOUS, number(drive.viscous)),
                 (words::ENCODER, drive.encoder.map(|side| quoted(side.name()))),
+                (words::LOAD_SCALE, Some(drive.load_scale).filter(|scale| *scale != 1.0).and_then(number)),
             ],
         );
     }

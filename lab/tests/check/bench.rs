@@ -84,7 +84,7 @@ impl Bench {
         (trial.force, trial.effort) = (Some(force), Some(effort));
         let rig = Rig {
             name: "bench".to_owned(),
-            drive: Some(Drive { inertia, viscous, encoder: None }),
+            drive: Some(Drive { inertia, viscous, encoder: None, load_scale: 1.0 }),
             contact: Some(Contact { surface: 0.0, stiffness, damping, bilateral: false }),
             ..Rig::default()
         };

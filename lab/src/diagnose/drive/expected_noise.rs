@@ -18,9 +18,8 @@ use super::trial::DriveTrial;
 pub fn expected_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> f64 {
     let mut draw = Draw::new(seed);
     passed(data, fit, common, |trial| {
-        let mut noise = trial.clone();
+        let mut noise = trial.clone().without_effort();
         noise.position = draw.white(fit.noise.encoder(), trial.len());
-        noise.effort.fill(0.0);
         if let Some(force) = &mut noise.force {
             *force = draw.white(white_variance(force), force.len());
         }
@@ -34,7 +33,7 @@ pub fn expected_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> 
 pub fn effort_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> f64 {
     let mut draw = Draw::new(seed);
     passed(data, fit, common, |trial| {
-        let mut noise = trial.clone();
+        let mut noise = trial.clone().without_effort();
         noise.position.fill(0.0);
         noise.effort = draw.white(robust_white_variance(&trial.effort), trial.effort.len());
         noise.force = None;

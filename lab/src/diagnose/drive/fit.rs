@@ -64,10 +64,11 @@ impl Data<'_> {
         self.trials.par_iter().map(|trial| innovations(trial, &law, noise, false)).collect()
     }
 
-    /// ln of the likelihood, with the common scale of both variances at its best, and ln of that scale.
+    /// ln of the likelihood and the prior, with the common scale of both variances at its best, and ln of that scale.
     #[must_use]
     pub fn log_likelihood(&self, model: &Model, values: &[f64], noise: &Noise) -> (f64, f64) {
-        self.profiled(&self.innovations(model, values, noise), noise)
+        let (rows, scale) = self.profiled(&self.innovations(model, values, noise), noise);
+        (rows + model.ln_prior(values), scale)
     }
 
     /// -1/2 sum (ln(2 pi s S) + e^2 / (s S)) with s = mean(e^2 / S), which is best, or as small as the encoder allows.
@@ -224,13 +225,13 @@ pub fn search_values(data: &Data<'_>, model: &Model, values: &mut Vec<f64>, nois
     let mut damping = 1e-3;
     for _ in 0..steps {
         let here = Linearisation::of(data, model, values, noise);
-        let before = data.profiled(&here.base, noise).0;
+        let before = data.profiled(&here.base, noise).0 + model.ln_prior(values);
         let columns = here.columns(values, &all);
-        let normal = Normal::of(&columns, &here.innovations);
+        let normal = Normal::of(&columns, &here.innovations).with_priors(values, &ranges);
         let mut gained = None;
         for _ in 0..DAMPING_TRIES {
             let moved = normal.step(values, &ranges, damping);
-            let after = data.profiled(&here.passes(&moved), noise).0;
+            let after = data.profiled(&here.passes(&moved), noise).0 + model.ln_prior(&moved);
             if after > before {
                 *values = moved;
                 damping = (damping * DAMPING_LOWERED).max(1e-9);
@@ -265,6 +266,18 @@ impl Normal {
         }
         let right = DVector::from_fn(count, |row, _| -dot(&columns[row], residual));
         Self { matrix, right, energy: energy(residual) }
+    }
+
+    /// The same with what is known of `values` beforehand, each prior being one row more.
+    fn with_priors(mut self, values: &[f64], ranges: &[Range]) -> Self {
+        for (at, range) in ranges.iter().enumerate() {
+            if let Some(prior) = range.prior {
+                let slope = range.slope(values[at]) / prior.deviation;
+                self.matrix[(at, at)] += slope * slope;
+                self.right[at] -= slope * (values[at] - prior.mean) / prior.deviation;
+            }
+        }
+        self
     }
 
     /// `values` after a damped step; a value at an end of its range that would leave it is held.

@@ -6,7 +6,7 @@ use super::trial::DriveTrial;
 /// Mean effort and mean contact force over the interval that ends at each encoder row, N or N m. Row 0 holds nothing.
 #[derive(Debug, Clone)]
 pub struct Inputs {
-    /// Effort that acts on the motor.
+    /// Effort that acts on the motor, less the load that is known.
     pub effort: Vec<f64>,
     /// Force with which the tool pushes on what it touches; zero where none is recorded.
     pub force: Vec<f64>,
@@ -21,6 +21,10 @@ impl Inputs {
         let mut effort = held.means(&trial.time, -law.effort_delay_s);
         if law.effort_lag_s > 0.0 {
             held.lag(&mut effort, &trial.time, -law.effort_delay_s, law.effort_lag_s);
+        }
+        if let Some(load) = &trial.load {
+            let load = Integral::sampled(&trial.source_time, load.iter().map(|load| law.load_scale * load));
+            effort.iter_mut().zip(load.means(&trial.time, 0.0)).for_each(|(effort, load)| *effort -= load);
         }
         let force = trial.force.as_ref().map_or_else(
             || vec![0.0; trial.len()],

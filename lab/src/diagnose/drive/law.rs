@@ -140,6 +140,8 @@ pub struct DriveLaw {
     pub effort_lag_s: f64,
     /// Greatest effort either way, N or N m.
     pub effort_limit: f64,
+    /// What the given load is multiplied by.
+    pub load_scale: f64,
     /// Dry friction, on the motor's side.
     pub friction: DryFriction,
     /// Constant load, N or N m.
@@ -171,6 +173,7 @@ impl DriveLaw {
             effort_delay_s,
             effort_lag_s: 0.0,
             effort_limit: f64::INFINITY,
+            load_scale: 1.0,
             friction: DryFriction::NONE,
             offset: 0.0,
             periodic: Vec::new(),

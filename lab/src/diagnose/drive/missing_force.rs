@@ -16,8 +16,7 @@ pub fn missing_force(trial: &DriveTrial, law: &DriveLaw, own: &Noise, common: &N
         return innovations(trial, law, common, true).disturbance;
     }
     let pass = innovations(trial, law, own, true);
-    let mut left = DriveTrial { position: pass.residual, force: None, ..trial.clone() };
-    left.effort.fill(0.0);
+    let left = DriveTrial { position: pass.residual, force: None, ..trial.clone().without_effort() };
     let viscous = law.viscous + law.link.map_or(0.0, |link| link.load_viscous);
     let rigid = DriveLaw::nominal(law.inertia, viscous, 0.0);
     let beside = innovations(&left, &rigid, common, true).disturbance;

@@ -47,6 +47,12 @@ impl Model {
         ranges
     }
 
+    /// ln of the prior density of `values`, but for a constant, nats.
+    #[must_use]
+    pub fn ln_prior(&self, values: &[f64]) -> f64 {
+        self.ranges().iter().zip(values).map(|(range, value)| range.ln_prior(*value)).sum()
+    }
+
     /// Where the values of term `at` stand.
     #[must_use]
     pub fn values_of(&self, at: usize) -> std::ops::Range<usize> {
@@ -80,6 +86,13 @@ impl Model {
         (0..self.terms.len()).any(|at| self.terms[at].is_at_end(&values[self.values_of(at)], &self.scales))
     }
 
+    /// Where the factor of the given load stands among the values; `None` where no load is given.
+    #[must_use]
+    pub fn load_scale(&self) -> Option<usize> {
+        let at = self.terms.iter().position(|term| *term == Term::LoadScale)?;
+        Some(self.values_of(at).start)
+    }
+
     /// The same with one term more.
     #[must_use]
     pub fn with(&self, term: Term) -> Self {
@@ -88,10 +101,11 @@ impl Model {
         more
     }
 
-    /// The names of its terms, sorted: the same for sets of terms that are told alike.
+    /// The names of its effects, sorted: the same for sets of terms that are told alike.
     #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
-        let mut names: Vec<&'static str> = self.terms.iter().map(Term::name).collect();
+        let effects = self.terms.iter().filter(|term| **term != Term::LoadScale);
+        let mut names: Vec<&'static str> = effects.map(Term::name).collect();
         names.sort_unstable();
         names
     }

@@ -47,7 +47,7 @@ pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Ve
     let scales = scales(trials, rig)?;
     let variance = encoder_variance(trials, &scales);
     let data = Data { trials, least_encoder_variance: 0.3 * variance };
-    let (model, effects) = law_of(rig, scales);
+    let (model, effects) = law_of(trials, rig, scales);
     let band = LOWEST_BAND_HZ.min(0.1 / scales.period_s);
     let noise =
         Noise { ln_disturbance: 0.0, ln_encoder: variance.ln() }.with_crossing(band, scales.period_s, rig.inertia);
@@ -67,7 +67,7 @@ pub const LOWEST_BAND_HZ: f64 = 5.0;
 pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
     let rows: usize = trials.iter().map(DriveTrial::len).sum();
     let largest = |of: &dyn Fn(&DriveTrial) -> f64| trials.iter().map(of).fold(0.0, f64::max);
-    let effort = largest(&|trial| deviation(&trial.effort));
+    let effort = largest(&|trial| deviation(&trial.net_effort()));
     let speed = largest(&|trial| usual_speed(trial));
     let position = || trials.iter().flat_map(|trial| trial.position.iter());
     let lowest = position().copied().fold(f64::INFINITY, f64::min);
@@ -142,18 +142,19 @@ pub fn punctual_and_lagged(
     Some([punctual, lagged])
 }
 
-/// The law that `rig` states, with the values of its effects.
-fn law_of(rig: &NominalDrive, scales: Scales) -> (Model, Vec<f64>) {
+/// The law that `rig` states of `trials`, with the values of its effects and the factor of a given load.
+fn law_of(trials: &[DriveTrial], rig: &NominalDrive, scales: Scales) -> (Model, Vec<f64>) {
     let encoder = rig.encoder.unwrap_or(Side::Load);
-    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) =
-        rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder)).unzip();
+    let load = trials.iter().any(|trial| trial.load.is_some()).then(|| (Term::LoadScale, vec![1.0]));
+    let effects = rig.effects.iter().filter_map(|effect| known(effect, &scales, encoder));
+    let (terms, values): (Vec<Term>, Vec<Vec<f64>>) = effects.chain(load).unzip();
     (Model { terms, scales }, values.concat())
 }
 
 /// The law that `rig` states, its values refitted; `None` where nothing could be.
 #[must_use]
 pub fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_variance: f64) -> Option<Fit> {
-    let (model, effects) = law_of(rig, scales);
+    let (model, effects) = law_of(data.trials, rig, scales);
     let noise = Noise { ln_disturbance: scales.starting_density().ln(), ln_encoder: encoder_variance.ln() };
     let fits = DELAY_STARTS.map(|rows| {
         let start = [&[scales.inertia, scales.viscous, rows * scales.period_s], effects.as_slice()].concat();

@@ -174,6 +174,9 @@ fn as_given(search: &Search<'_>) -> Fit {
     let mut given = search.nominal.clone();
     given.values[index::INERTIA] = search.scales.inertia;
     given.values[index::VISCOUS] = search.scales.viscous;
+    if let Some(at) = given.model.load_scale() {
+        given.values[at] = 1.0;
+    }
     given
 }
 
@@ -394,6 +397,56 @@ mod tests {
         assert!(outcome.named.is_empty());
         assert!((outcome.chosen.values[index::INERTIA] - 0.8).abs() < 2e-3);
         assert!((outcome.chosen.values[index::VISCOUS] - 4.0).abs() < 2e-2);
+    }
+
+    /// What a rigid-body model explains, of which the effort has to bear `factor`.
+    fn loaded(drive: &TestDrive, factor: f64, seed: u64) -> DriveTrial {
+        let mut trial = drive.trial(6.0, seed);
+        let load: Vec<f64> = trial.source_time.iter().map(|time| 2.0 * (3.0 * time + seed as f64).sin()).collect();
+        trial.effort.iter_mut().zip(&load).for_each(|(effort, load)| *effort += factor * load);
+        DriveTrial { load: Some(load), ..trial }
+    }
+
+    #[test]
+    fn a_load_that_is_off_by_some_hundredths_is_a_value_and_no_physics() {
+        let rig = NominalDrive {
+            inertia: 0.8,
+            viscous: 4.0,
+            is_rotary: false,
+            encoder: None,
+            resolution: 1e-5,
+            effects: vec![],
+        };
+        let identified = |drive: &TestDrive, factor: f64| {
+            identify(vec![loaded(drive, factor, 1), loaded(drive, factor, 2)], &rig, 1, &|_| {}).expect("it moves")
+        };
+        let scale = |outcome: &Outcome| outcome.chosen.values[outcome.chosen.model.load_scale().expect("a load")];
+        let off = identified(&TestDrive::PLAIN, 1.06);
+        assert_eq!((off.verdict, off.named.len()), (Verdict::Parameters, 0));
+        // The load of the test is held from row to row and the model's is straight: half a row of 3 rad/s, 3e-3 N of 2 N.
+        assert!((scale(&off) - 1.06).abs() < 3e-3, "{}", scale(&off));
+        let right = identified(&TestDrive { coulomb: 0.4, ..TestDrive::PLAIN }, 1.0);
+        assert_eq!(right.chosen.model.names(), ["coulomb_friction"]);
+        assert!((scale(&right) - 1.0).abs() < 3e-3, "{}", scale(&right));
+    }
+
+    #[test]
+    fn a_load_that_never_acts_leaves_its_factor_where_it_is_believed() {
+        let rig = NominalDrive {
+            inertia: 0.8,
+            viscous: 4.0,
+            is_rotary: false,
+            encoder: None,
+            resolution: 1e-5,
+            effects: vec![],
+        };
+        let still = |trial: DriveTrial| DriveTrial { load: Some(vec![0.0; trial.effort.len()]), ..trial };
+        let trials = [1, 2].map(|seed| still(TestDrive::PLAIN.trial(6.0, seed)));
+        let outcome = identify(trials.to_vec(), &rig, 1, &|_| {}).expect("it moves");
+        let at = outcome.chosen.model.load_scale().expect("a load");
+        assert_eq!((outcome.verdict, outcome.chosen.values[at]), (Verdict::NoMismatch, 1.0));
+        // Nothing was seen of it: all that is believed of it stays possible.
+        assert_eq!(outcome.intervals[at], [0.85, 1.15]);
     }
 
     #[test]

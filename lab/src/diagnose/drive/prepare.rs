@@ -29,15 +29,13 @@ pub fn trials(rig: &Rig, recordings: &[Recording]) -> Vec<DriveTrial> {
     let touches = rig.contact.is_some() && recordings.iter().all(|trial| trial.force.is_some());
     let trial = |recording: &Recording| {
         let effort = recording.effort.clone().unwrap_or_default();
-        let effort = match &recording.load {
-            Some(load) => effort.iter().zip(load).map(|(effort, load)| effort - load).collect(),
-            None => effort,
-        };
         let force = recording.force.clone().filter(|_| touches);
         let noise = Figures::of(rig, recording).force.filter(|_| touches).map_or(0.0, |channel| channel.noise);
         let trial =
             DriveTrial::new(recording.name.clone(), recording.time.clone(), &recording.position, effort, force, every);
-        DriveTrial { force_density: noise * noise * trial.recorded_period_s(), ..trial }
+        let scale = rig.drive.map_or(1.0, |drive| drive.load_scale);
+        let load = recording.load.as_ref().map(|load| load.iter().map(|load| scale * load).collect());
+        DriveTrial { load, force_density: noise * noise * trial.recorded_period_s(), ..trial }
     };
     recordings.iter().map(trial).collect()
 }

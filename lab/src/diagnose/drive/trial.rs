@@ -18,8 +18,10 @@ pub struct DriveTrial {
     pub period_s: f64,
     /// Time of each recorded row, s.
     pub source_time: Vec<f64>,
-    /// Effort less the known load, N or N m, held from its row to the next.
+    /// Effort, N or N m, held from its row to the next.
     pub effort: Vec<f64>,
+    /// What a rigid-body model explains of the effort, N or N m, straight from its row to the next; `None` where none is given.
+    pub load: Option<Vec<f64>>,
     /// Contact force, N or N m, positive when the tool pushes; `None` in free motion.
     pub force: Option<Vec<f64>>,
     /// Two-sided density of the force sensor's noise, which the model feels as a force on the load, N^2 s or (N m)^2 s.
@@ -30,7 +32,7 @@ pub struct DriveTrial {
 const GAP_PERIODS: f64 = 8.0;
 
 impl DriveTrial {
-    /// A trial of which every `every`-th row is taken as an encoder row, and whose force is without noise.
+    /// A trial without a load, of which every `every`-th row is taken as an encoder row, and whose force is without noise.
     #[must_use]
     pub fn new(
         name: String,
@@ -46,7 +48,21 @@ impl DriveTrial {
         let period_s = median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(1.0);
         let restart =
             (0..time.len()).map(|row| row == 0 || time[row] - time[row - 1] > GAP_PERIODS * period_s).collect();
-        Self { name, time, position, restart, period_s, source_time, effort, force, force_density: 0.0 }
+        Self { name, time, position, restart, period_s, source_time, effort, load: None, force, force_density: 0.0 }
+    }
+
+    /// What the effort has beyond the load as it is given, N or N m, at each recorded row.
+    #[must_use]
+    pub fn net_effort(&self) -> Vec<f64> {
+        let Some(load) = &self.load else { return self.effort.clone() };
+        self.effort.iter().zip(load).map(|(effort, load)| effort - load).collect()
+    }
+
+    /// The same without what acts on it.
+    #[must_use]
+    pub fn without_effort(mut self) -> Self {
+        self.effort.fill(0.0);
+        Self { load: None, ..self }
     }
 
     /// Median time between recorded rows, s.
@@ -88,6 +104,7 @@ impl DriveTrial {
             period_s: self.period_s,
             source_time: self.source_time.clone(),
             effort: self.effort.clone(),
+            load: self.load.clone(),
             force: self.force.clone(),
             force_density: self.force_density,
         }

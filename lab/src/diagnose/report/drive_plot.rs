@@ -19,7 +19,8 @@ const BY_POSITION: [&str; 2] = ["gravity_load", "cogging"];
 
 /// One trace a trial.
 pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
-    let law = DriveLaw::nominal(1.0, 0.0, outcome.chosen.values[index::DELAY]);
+    let whole = outcome.chosen.model.law(&outcome.chosen.values);
+    let law = DriveLaw { load_scale: whole.load_scale, ..DriveLaw::nominal(1.0, 0.0, whole.effort_delay_s) };
     let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
         let effort = Inputs::of(trial, &law).effort;
         let by = |which: usize| -> Vec<f32> {
@@ -115,6 +116,7 @@ fn beside_inertia(outcome: &Outcome, trial: usize) -> Vec<f64> {
     let bare = DriveLaw {
         effort_lag_s: whole.effort_lag_s,
         effort_limit: whole.effort_limit,
+        load_scale: whole.load_scale,
         force_gain_error: whole.force_gain_error,
         force_delay_s: whole.force_delay_s,
         tool_inertia: whole.tool_inertia,

@@ -153,6 +153,8 @@ pub fn refined(given: &Rig, base: &Rig, outcome: &Outcome) -> Rig {
         inertia: if is_wrong { values[index::INERTIA] } else { drive.inertia },
         viscous: if is_wrong { values[index::VISCOUS] } else { drive.viscous },
         encoder: outcome.chosen.model.terms.iter().find_map(Term::encoder).or(drive.encoder),
+        load_scale: drive.load_scale
+            * outcome.chosen.model.load_scale().filter(|_| is_wrong).map_or(1.0, |at| values[at]),
     });
     let terms = (0..outcome.chosen.model.terms.len())
         .filter_map(|at| named(&outcome.chosen, &outcome.intervals, at))
@@ -223,11 +225,19 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         fitted: values[at],
         ci95: channel::told(values[at], ends[at]),
     };
-    vec![
+    let mut rows = vec![
         row(inertia, c.inertia_unit(), drive.inertia, index::INERTIA),
         row("viscous", c.damping_unit(), drive.viscous, index::VISCOUS),
         row("effort_delay", "s", 0.0, index::DELAY),
-    ]
+    ];
+    rows.extend(outcome.chosen.model.load_scale().map(|at| Nominal {
+        name: "load_scale".to_owned(),
+        unit: "1".to_owned(),
+        given: drive.load_scale,
+        fitted: drive.load_scale * values[at],
+        ci95: channel::told(values[at], ends[at]).map(|end| drive.load_scale * end),
+    }));
+    rows
 }
 
 /// Of the values that the report shows, of which some are not those of the fit: a pitch is one over a frequency.
@@ -237,7 +247,7 @@ fn correlations(outcome: &Outcome, rig: &Rig) -> Option<Correlations> {
     let shown = |values: &[f64]| {
         let moved = Fit { values: values.to_vec(), ..fit.clone() };
         let ends = vec![[0.0; 2]; values.len()];
-        let at = [index::INERTIA, index::VISCOUS, index::DELAY];
+        let at = [index::INERTIA, index::VISCOUS, index::DELAY].into_iter().chain(outcome.chosen.model.load_scale());
         let mut shown: Vec<(String, f64)> = names.iter().cloned().zip(at.map(|at| values[at])).collect();
         for effect in (0..fit.model.terms.len()).filter_map(|at| named(&moved, &ends, at)) {
             let parameters = effect.effect.spec().forms[effect.form].parameters.iter().zip(&effect.values);
