@@ -1,6 +1,7 @@
 //! The law driven along a trial and corrected at each encoder row: innovations, their variance, and the smoothed disturbance.
 
 use super::innovations::Innovations;
+use super::input::Inputs;
 use super::law::DriveLaw;
 use super::noise::Noise;
 use super::one_body_filter::{Gains, one_body};
@@ -10,9 +11,21 @@ use super::two_body_filter::two_bodies;
 /// Drives `law` along `trial`; with `smooth` the disturbance is smoothed, too.
 #[must_use]
 pub fn innovations(trial: &DriveTrial, law: &DriveLaw, noise: &Noise, smooth: bool) -> Innovations {
+    innovations_under(trial, &Inputs::of(trial, law), law, noise, smooth)
+}
+
+/// The same under `inputs`, which are those of `law`.
+#[must_use]
+pub fn innovations_under(
+    trial: &DriveTrial,
+    inputs: &Inputs,
+    law: &DriveLaw,
+    noise: &Noise,
+    smooth: bool,
+) -> Innovations {
     match law.link {
-        None => one_body(trial, law, noise, &Gains::of(trial, law, noise), smooth),
-        Some(link) => two_bodies(trial, law, link, noise, smooth),
+        None => one_body(trial, inputs, law, noise, &Gains::of(trial, law, noise), smooth),
+        Some(link) => two_bodies(trial, inputs, law, link, noise, smooth),
     }
 }
 

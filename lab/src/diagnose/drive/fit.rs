@@ -3,8 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::filter::innovations;
+use super::filter::{innovations, innovations_under};
 use super::innovations::Innovations;
+use super::input::Inputs;
+use super::law::DriveLaw;
 use super::model::Model;
 use super::noise::Noise;
 use super::one_body_filter::{Gains, one_body};
@@ -140,6 +142,8 @@ struct Linearisation<'a> {
     model: &'a Model,
     noise: &'a Noise,
     ranges: Vec<Range>,
+    law: DriveLaw,
+    inputs: Vec<Inputs>,
     gains: Option<Vec<Gains>>,
     base: Vec<Innovations>,
     innovations: Vec<f64>,
@@ -152,8 +156,18 @@ impl<'a> Linearisation<'a> {
     fn of(data: &'a Data<'a>, model: &'a Model, values: &[f64], noise: &'a Noise) -> Self {
         let law = model.law(values);
         let gains = law.link.is_none().then(|| data.trials.par_iter().map(|t| Gains::of(t, &law, noise)).collect());
-        let mut at =
-            Self { data, model, noise, ranges: model.ranges(), gains, base: Vec::new(), innovations: Vec::new() };
+        let inputs = Inputs::of_all(data.trials, &law);
+        let mut at = Self {
+            data,
+            model,
+            noise,
+            ranges: model.ranges(),
+            law,
+            inputs,
+            gains,
+            base: Vec::new(),
+            innovations: Vec::new(),
+        };
         at.base = at.passes(values);
         at.innovations = data.standardised(&at.base, &at.base);
         at
@@ -161,12 +175,15 @@ impl<'a> Linearisation<'a> {
 
     fn passes(&self, values: &[f64]) -> Vec<Innovations> {
         let law = self.model.law(values);
+        let own = (!Inputs::are_alike(&law, &self.law)).then(|| Inputs::of_all(self.data.trials, &law));
+        let inputs = own.as_ref().unwrap_or(&self.inputs);
+        let each = self.data.trials.par_iter().zip(inputs);
         match &self.gains {
-            None => self.data.trials.par_iter().map(|trial| innovations(trial, &law, self.noise, false)).collect(),
-            Some(gains) => {
-                let each = self.data.trials.par_iter().zip(gains);
-                each.map(|(trial, gains)| one_body(trial, &law, self.noise, gains, false)).collect()
-            }
+            None => each.map(|(trial, inputs)| innovations_under(trial, inputs, &law, self.noise, false)).collect(),
+            Some(gains) => each
+                .zip(gains)
+                .map(|((trial, inputs), gains)| one_body(trial, inputs, &law, self.noise, gains, false))
+                .collect(),
         }
     }
 
@@ -320,7 +337,15 @@ pub fn search_noise(data: &Data<'_>, model: &Model, values: &[f64], noise: &mut 
     const WIDER: f64 = 4.0;
     const CLOSE: f64 = 0.08;
     let base = *noise;
-    let cost = |ln: f64| -data.log_likelihood(model, values, &Noise { ln_disturbance: ln, ..base }).0;
+    let law = model.law(values);
+    let inputs = Inputs::of_all(data.trials, &law);
+    let cost = |ln: f64| {
+        let noise = Noise { ln_disturbance: ln, ..base };
+        let each = data.trials.par_iter().zip(&inputs);
+        let passes: Vec<_> =
+            each.map(|(trial, inputs)| innovations_under(trial, inputs, &law, &noise, false)).collect();
+        -data.profiled(&passes, &noise).0
+    };
     let (mut low, mut middle, mut high) =
         (base.ln_disturbance - FIRST_SPAN, base.ln_disturbance, base.ln_disturbance + FIRST_SPAN);
     let (mut at_low, mut at_middle, mut at_high) = (cost(low), cost(middle), cost(high));

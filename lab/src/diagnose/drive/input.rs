@@ -1,5 +1,7 @@
 //! What acts on the drive between two encoder rows: means of held and of sampled signals, early or late by any time.
 
+use rayon::prelude::*;
+
 use super::law::DriveLaw;
 use super::trial::DriveTrial;
 
@@ -13,6 +15,28 @@ pub struct Inputs {
 }
 
 impl Inputs {
+    /// Those of each of `trials`.
+    #[must_use]
+    pub fn of_all(trials: &[DriveTrial], law: &DriveLaw) -> Vec<Self> {
+        trials.par_iter().map(|trial| Self::of(trial, law)).collect()
+    }
+
+    /// Whether they are the same under `one` and `other`: actuator, force sensor and the load's factor are.
+    #[must_use]
+    pub fn are_alike(one: &DriveLaw, other: &DriveLaw) -> bool {
+        let of = |law: &DriveLaw| {
+            [
+                law.effort_delay_s,
+                law.effort_lag_s,
+                law.effort_limit,
+                law.load_scale,
+                law.force_gain_error,
+                law.force_delay_s,
+            ]
+        };
+        of(one) == of(other)
+    }
+
     /// The inputs of `trial` under the actuator and the force sensor of `law`.
     #[must_use]
     pub fn of(trial: &DriveTrial, law: &DriveLaw) -> Self {

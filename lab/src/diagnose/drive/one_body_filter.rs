@@ -81,10 +81,16 @@ impl DriveLaw {
     }
 }
 
-/// One body with given gains.
+/// One body under `inputs` with given gains.
 #[must_use]
-pub fn one_body(trial: &DriveTrial, law: &DriveLaw, noise: &Noise, gains: &Gains, smooth: bool) -> Innovations {
-    let inputs = Inputs::of(trial, law);
+pub fn one_body(
+    trial: &DriveTrial,
+    inputs: &Inputs,
+    law: &DriveLaw,
+    noise: &Noise,
+    gains: &Gains,
+    smooth: bool,
+) -> Innovations {
     let rows = trial.len();
     let mut out =
         Innovations { innovation: vec![0.0; rows], variance: gains.variance.clone(), ..Innovations::default() };
