@@ -5,7 +5,7 @@
 //! Jorgensen, *Computers and Chemical Engineering* 28, 2004; Ljung, *System Identification*, 1999). Nothing is differentiated and no
 //! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
 //!
-//! [`trial`] and [`input`] are the data, [`law`] and [`noise`] the equations, [`filter`] gives the [`innovations`] of one body or two,
+//! [`trial`] and [`input`] are the data, [`law`], [`presliding`] and [`noise`] the equations, [`filter`] gives the [`innovations`] of one body or two,
 //! [`model`] and [`term`] are what can be in a law, [`fit`] the likelihood, [`nominal`] the law of the rig file, [`candidates`],
 //! [`links`] and [`selection`] the choice with its [`criteria`], [`held_out`] and [`interval`] the evidence, [`outside_force`] the
 //! stretches in which something else pushes, and [`outcome`] the answer.
@@ -32,6 +32,7 @@ pub mod one_body_filter;
 pub mod outcome;
 pub mod outside_force;
 pub mod prepare;
+pub mod presliding;
 pub mod selection;
 pub mod term;
 pub mod trial;

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::criteria::{LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_SHARE};
 use super::fit::{Data, Effort, Fit, fit};
 use super::model::{Model, NOMINAL, index};
 use super::noise::Noise;
@@ -21,6 +22,9 @@ const FORCE_START: f64 = 0.03;
 /// Pitches of the way that are tried.
 const PITCHES: usize = 3;
 
+/// Stribeck speeds, over the top speed, that a search starts from.
+const STRIBECK_SPEEDS: [f64; 3] = [0.02, 0.08, 0.3];
+
 /// Ripples that a model may hold.
 const MOST_RIPPLES: usize = 2;
 
@@ -39,7 +43,10 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
         }
     } else {
         offer(Term::Coulomb, vec![vec![force]]);
-        offer(Term::Stribeck, [0.02, 0.08, 0.3].map(|part| vec![force, force, part * scales.speed]).to_vec());
+        offer(Term::Stribeck, STRIBECK_SPEEDS.map(|part| vec![force, force, part * scales.speed]).to_vec());
+        if !has("sublinear_friction") {
+            offer(Term::Sublinear, vec![vec![force, 0.5]]);
+        }
     }
     if !has("gravity_load") {
         offer(Term::ConstantLoad, vec![vec![0.0]]);
@@ -80,11 +87,88 @@ pub fn tried(data: &Data<'_>, base: &Fit, candidates: Vec<Candidate>) -> Vec<Fit
             let model = base.model.with(candidate.term);
             let starts = candidate.starts.iter().flat_map(|own| starting_points(base, own));
             let fits = starts.map(|(start, noise)| fit(data, &model, &start, noise, Effort::QUICK));
-            fits.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))
+            let best = fits.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
+            Some(accompanied(data, base, best))
         })
         .collect();
     found.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     found
+}
+
+/// Ways over which friction builds up, over the travel, that a search starts from.
+const PRESLIDING_STARTS: [f64; 2] = [1e-2, 1e-4];
+
+/// `fit`, of which the last term is new beside `base`, with what belongs to dry friction where that is the term.
+fn accompanied(data: &Data<'_>, base: &Fit, fit: Fit) -> Fit {
+    let rubs = fit.model.terms.last().is_some_and(Term::is_friction);
+    if rubs && is_likelier(&fit, base) { whole_friction(data, fit) } else { fit }
+}
+
+/// `fit`, with what belongs to its dry friction where the likelihood asks for it: a step of the friction that grows with the speed, and the
+/// way over which it builds up.
+#[must_use]
+pub fn whole_friction(data: &Data<'_>, mut fit: Fit) -> Fit {
+    let has = |name: &str| fit.model.has(name);
+    if has("sublinear_friction") && !has("coulomb_friction") && !has("stribeck_friction") {
+        // To its end first: else the step would be taken for what only more steps of the search gain.
+        fit = self::fit(data, &fit.model, &fit.values, fit.noise, Effort::FULL);
+        let step = 0.01 * fit.model.scales.effort;
+        fit = likeliest_with(data, fit, &Term::Coulomb, &[step]);
+    }
+    if fit.model.terms.iter().any(Term::is_friction) { building_up(data, fit) } else { fit }
+}
+
+/// `fit`, which has dry friction, with the way over which that builds up where the likelihood asks for it.
+#[must_use]
+pub fn building_up(data: &Data<'_>, fit: Fit) -> Fit {
+    if fit.model.terms.contains(&Term::Presliding) {
+        return fit;
+    }
+    let ways = PRESLIDING_STARTS.map(|part| part * fit.model.scales.travel);
+    let more = likeliest_with(data, fit.clone(), &Term::Presliding, &ways);
+    if belongs(data, &more, &fit) { more } else { fit }
+}
+
+/// Whether the way over which friction builds up, which `more` has beside `less`, is worth its value: as of a term that is told, the
+/// likelihood speaks for it, and it takes its share of the unexplained power.
+#[must_use]
+pub fn belongs(data: &Data<'_>, more: &Fit, less: &Fit) -> bool {
+    let density = |fit: &Fit| data.unexplained_density(&fit.model, &fit.noise);
+    is_likelier(more, less) && density(more) < (1.0 - LEAST_SHARE) * density(less)
+}
+
+/// `less`, or the same with `term` from the likeliest of `starts` where that is worth its value.
+fn likeliest_with(data: &Data<'_>, less: Fit, term: &Term, starts: &[f64]) -> Fit {
+    let model = less.model.with(term.clone());
+    let fits = starts.iter().map(|start| {
+        let values = [less.values.as_slice(), &[*start]].concat();
+        fit(data, &model, &values, less.noise, Effort::QUICK)
+    });
+    let best = fits.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
+    best.filter(|best| is_likelier(best, &less) && idle_friction(best).is_none()).unwrap_or(less)
+}
+
+/// A term that belongs to dry friction and ended where its search did: a way over which friction builds up, or a step of the friction that
+/// grows with the speed. The rest of the friction is what it is without it.
+#[must_use]
+pub fn idle_friction(fit: &Fit) -> Option<usize> {
+    let ranges = fit.model.ranges();
+    let is_idle = |at: &usize| {
+        let own = fit.model.values_of(*at).start;
+        match fit.model.terms[*at] {
+            Term::Presliding => ranges[own].is_at_end(fit.values[own]),
+            Term::Coulomb => fit.model.has("sublinear_friction") && ranges[own].is_at_end(fit.values[own]),
+            _ => false,
+        }
+    };
+    (0..fit.model.terms.len()).find(is_idle)
+}
+
+/// Whether the likelihood alone speaks for `more` and the values that it has beside those of `less`.
+#[must_use]
+pub fn is_likelier(more: &Fit, less: &Fit) -> bool {
+    let values = more.values.len().saturating_sub(less.values.len()).max(1);
+    more.log_likelihood - less.log_likelihood > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
 }
 
 /// ln of the factor by which a fitted inertia may differ from the rig file's before the search starts from the latter, too.
@@ -148,10 +232,24 @@ fn repeating_pitches(data: &Data<'_>, scales: &Scales, disturbance: &[Vec<f64>])
     peaks.into_iter().map(|(pitch, _)| pitch).collect()
 }
 
+/// `fit` with Stribeck friction in the place of Coulomb friction, its term `at`, and values to start from.
+#[must_use]
+pub fn stribeck_for(fit: &Fit, at: usize) -> [(Model, Vec<f64>); STRIBECK_SPEEDS.len()] {
+    let own = fit.model.values_of(at);
+    STRIBECK_SPEEDS.map(|part| {
+        let (mut model, mut values) = (fit.model.clone(), fit.values.clone());
+        model.terms[at] = Term::Stribeck;
+        let level = values[own.start];
+        values.splice(own.clone(), [level, 0.3 * level, part * fit.model.scales.speed]);
+        (model, values)
+    })
+}
+
 /// A model's own copy without term `at`, or with a simpler law in its place, and values to start from.
 #[must_use]
 pub fn simpler(fit: &Fit, at: usize) -> Vec<(Model, Vec<f64>)> {
     let own = fit.model.values_of(at);
+    let other_rub = |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck);
     let replaced = |term: Term, values: &[f64]| {
         let mut model = fit.model.clone();
         model.terms[at] = term;
@@ -162,19 +260,16 @@ pub fn simpler(fit: &Fit, at: usize) -> Vec<(Model, Vec<f64>)> {
     let values = &fit.values[own.clone()];
     let mut all = match &fit.model.terms[at] {
         Term::Stribeck => vec![replaced(Term::Coulomb, &[values[0] + 0.3 * values[1]])],
+        Term::Sublinear if !fit.model.terms.iter().any(other_rub) => vec![replaced(Term::Coulomb, &[0.5 * values[0]])],
         Term::AngleLoad => vec![replaced(Term::ConstantLoad, &[0.0])],
         Term::Play(side) => {
             vec![replaced(Term::Compliance(*side), &[0.1 * values[0], values[1], values[2], values[4]])]
         }
         _ => Vec::new(),
     };
-    let mut model = fit.model.clone();
-    model.terms.remove(at);
-    let mut rest = fit.values.clone();
-    rest.drain(own);
-    // Sub-linear friction is what dry and viscous friction leave: without them it would stand for both.
-    if !model.has("sublinear_friction") || model.has("coulomb_friction") || model.has("stribeck_friction") {
-        all.push((model, rest));
+    // The step of a friction that grows with the speed came with it.
+    if !(other_rub(&fit.model.terms[at]) && fit.model.has("sublinear_friction")) {
+        all.push(fit.model.without(at, &fit.values));
     }
     all
 }

@@ -4,6 +4,8 @@
 
 pub use crate::rig::TransmissionSide as Side;
 
+use super::presliding::{Slips, Step};
+
 /// What lies between motor and load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
@@ -66,6 +68,8 @@ pub struct DryFriction {
     pub reference_speed: f64,
     /// Share of the contact force.
     pub load_share: f64,
+    /// Way over which it builds up after a turn, m or rad; zero: at once.
+    pub presliding: f64,
 }
 
 impl DryFriction {
@@ -78,6 +82,7 @@ impl DryFriction {
         sublinear_exponent: 0.5,
         reference_speed: 1.0,
         load_share: 0.0,
+        presliding: 0.0,
     };
 
     /// Its size at `speed` (positive) while the contact bears `force`; at rest it holds up to that.
@@ -91,6 +96,13 @@ impl DryFriction {
             level += self.sublinear * (speed / self.reference_speed).powf(self.sublinear_exponent);
         }
         level
+    }
+
+    /// Takes what it remembers of the way along by `way`, as where a position turns out to be another.
+    pub fn follow(&self, slips: &mut Slips, way: f64) {
+        if self.presliding > 0.0 {
+            slips.follow(way, self.presliding);
+        }
     }
 
     /// Whether there is any.
@@ -127,6 +139,44 @@ impl PositionCurve {
     }
 }
 
+/// What a friction that changes changes with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Along {
+    /// Time since the trial's first row.
+    #[default]
+    Time,
+    /// Position.
+    Place,
+}
+
+/// By how much dry friction is more, as a share of itself, of no law.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FrictionCourse {
+    /// What it changes with.
+    pub along: Along,
+    /// The share, straight between knots over that; no knots: none.
+    pub curve: PositionCurve,
+}
+
+impl FrictionCourse {
+    /// What friction is multiplied by `time` seconds after the first row, at `position`.
+    #[must_use]
+    pub fn factor(&self, time: f64, position: f64) -> f64 {
+        1.0 + self.curve.at(if self.along == Along::Time { time } else { position })
+    }
+}
+
+/// What acts on a body through a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Acting {
+    /// Everything that does not depend on the motion, N or N m.
+    pub push: f64,
+    /// What the contact bears, N or N m.
+    pub force: f64,
+    /// What dry friction is multiplied by.
+    pub friction_factor: f64,
+}
+
 /// The law with its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveLaw {
@@ -144,6 +194,8 @@ pub struct DriveLaw {
     pub load_scale: f64,
     /// Dry friction, on the motor's side.
     pub friction: DryFriction,
+    /// How dry friction changes, of no law.
+    pub friction_course: FrictionCourse,
     /// Constant load, N or N m.
     pub offset: f64,
     /// Loads that repeat along the way: gravity by angle, cogging.
@@ -175,6 +227,7 @@ impl DriveLaw {
             effort_limit: f64::INFINITY,
             load_scale: 1.0,
             friction: DryFriction::NONE,
+            friction_course: FrictionCourse::default(),
             offset: 0.0,
             periodic: Vec::new(),
             curve: PositionCurve::default(),
@@ -191,23 +244,31 @@ impl DriveLaw {
         self.offset + self.curve.at(position) + self.periodic.iter().map(|periodic| periodic.at(position)).sum::<f64>()
     }
 
-    /// Position and velocity of one body of `inertia` after `step` seconds under a constant `push`, `force` being what the contact
-    /// bears. Between two turns of the direction the velocity is taken by the midpoint rule; a turn is met at its instant, and there
-    /// the body stays where friction can hold it.
+    /// Position and velocity of one body of `inertia` after `step` seconds under what is `acting`; `slips` is what friction remembers of
+    /// the way, where it builds up over one. Between two turns of the direction the velocity is taken by the midpoint rule; a turn is
+    /// met at its instant, and there the body stays where friction can hold it.
     #[must_use]
-    pub fn advance(&self, state: [f64; 2], push: f64, force: f64, inertia: f64, step: f64) -> [f64; 2] {
+    pub fn advance(&self, state: [f64; 2], slips: &mut Slips, acting: &Acting, inertia: f64, step: f64) -> [f64; 2] {
         let [mut position, mut velocity] = state;
+        let Acting { push, force, friction_factor } = *acting;
         let push = push - self.load(position + 0.5 * step * velocity);
         if !self.friction.acts() {
             let middle = velocity + 0.5 * step * (push - self.viscous * velocity) / inertia;
             let after = velocity + step * (push - self.viscous * middle) / inertia;
             return [position + 0.5 * step * (velocity + after), after];
         }
+        if self.friction.presliding > 0.0 {
+            let level = friction_factor * self.friction.level(velocity.abs(), force);
+            let step = Step { velocity, push, viscous: self.viscous, inertia, duration: step };
+            let [way, after] = slips.advance(level, self.friction.presliding, &step);
+            return [position + way, after];
+        }
+        let level = |speed: f64| friction_factor * self.friction.level(speed, force);
         let mut left = step;
         for _ in 0..TURNS_PER_ROW {
-            let Some(direction) = self.direction(velocity, push, force) else { return [position, 0.0] };
+            let Some(direction) = Self::direction(velocity, push, level(0.0)) else { return [position, 0.0] };
             let rate = |speed: f64| {
-                let against = direction * self.friction.level(speed.abs(), force) + self.viscous * speed;
+                let against = direction * level(speed.abs()) + self.viscous * speed;
                 (push - against) / inertia
             };
             let middle = velocity + 0.5 * left * rate(velocity);
@@ -227,12 +288,12 @@ impl DriveLaw {
         [position, 0.0]
     }
 
-    /// Which way the body goes; `None` where friction holds it.
-    fn direction(&self, velocity: f64, push: f64, force: f64) -> Option<f64> {
+    /// Which way the body goes; `None` where friction `holds` it.
+    fn direction(velocity: f64, push: f64, holds: f64) -> Option<f64> {
         if velocity != 0.0 {
             return Some(velocity.signum());
         }
-        (push.abs() > self.friction.level(0.0, force)).then(|| push.signum())
+        (push.abs() > holds).then(|| push.signum())
     }
 }
 
@@ -246,19 +307,23 @@ mod tests {
         law
     }
 
+    fn pushed(push: f64) -> Acting {
+        Acting { push, force: 0.0, friction_factor: 1.0 }
+    }
+
     #[test]
     fn friction_holds_what_is_below_it_and_brakes_what_is_above() {
         let law = rubbing(1.0);
-        assert_eq!(law.advance([0.3, 0.0], 0.99, 0.0, 2.0, 0.01), [0.3, 0.0]);
-        assert_eq!(law.advance([0.3, 0.0], -0.99, 0.0, 2.0, 0.01), [0.3, 0.0]);
-        let [_, velocity] = law.advance([0.3, 0.0], 1.5, 0.0, 2.0, 0.01);
+        assert_eq!(law.advance([0.3, 0.0], &mut Slips::default(), &pushed(0.99), 2.0, 0.01), [0.3, 0.0]);
+        assert_eq!(law.advance([0.3, 0.0], &mut Slips::default(), &pushed(-0.99), 2.0, 0.01), [0.3, 0.0]);
+        let [_, velocity] = law.advance([0.3, 0.0], &mut Slips::default(), &pushed(1.5), 2.0, 0.01);
         assert!((velocity - 0.01 * 0.5 / 2.0).abs() < 1e-15);
     }
 
     #[test]
     fn a_body_comes_to_rest_at_the_instant_of_physics_and_stays() {
         // 1 N against 2 kg at 2 mm/s: rest after 4 ms and 4 um, the rest of the step does nothing.
-        let [position, velocity] = rubbing(1.0).advance([0.0, 2e-3], 0.0, 0.0, 2.0, 0.01);
+        let [position, velocity] = rubbing(1.0).advance([0.0, 2e-3], &mut Slips::default(), &pushed(0.0), 2.0, 0.01);
         assert_eq!(velocity, 0.0);
         assert!((position - 4e-6).abs() < 1e-18);
     }
@@ -266,14 +331,14 @@ mod tests {
     #[test]
     fn a_turn_within_a_step_goes_on_the_other_way_with_friction_against_it() {
         // -3 N: to rest against 4 N (friction helps) in 1 ms, then back with 2 N for 9 ms.
-        let [_, velocity] = rubbing(1.0).advance([0.0, 2e-3], -3.0, 0.0, 2.0, 0.01);
+        let [_, velocity] = rubbing(1.0).advance([0.0, 2e-3], &mut Slips::default(), &pushed(-3.0), 2.0, 0.01);
         assert!((velocity + 9e-3 * 2.0 / 2.0).abs() < 1e-15);
     }
 
     #[test]
     fn viscous_friction_alone_decays_by_the_exponential_to_the_third_order() {
         let law = DriveLaw::nominal(0.8, 4.0, 0.0);
-        let [position, velocity] = law.advance([0.0, 1.0], 0.0, 0.0, 0.8, 1e-3);
+        let [position, velocity] = law.advance([0.0, 1.0], &mut Slips::default(), &pushed(0.0), 0.8, 1e-3);
         let decay = (-5e-3f64).exp();
         // The midpoint rule errs by (b h / m)^3 / 6 a step.
         assert!((velocity - decay).abs() < 1.1 * 5e-3f64.powi(3) / 6.0);

@@ -101,11 +101,29 @@ impl Model {
         more
     }
 
-    /// The names of its effects, sorted: the same for sets of terms that are told alike.
+    /// The same, with `values`, without term `at`, and without what no term is left for: friction builds up only where there is some.
+    #[must_use]
+    pub fn without(&self, at: usize, values: &[f64]) -> (Self, Vec<f64>) {
+        let (mut less, mut rest) = (self.clone(), values.to_vec());
+        rest.drain(self.values_of(at));
+        less.terms.remove(at);
+        let presliding = less.terms.iter().position(|term| *term == Term::Presliding);
+        match presliding.filter(|_| !less.terms.iter().any(Term::is_friction)) {
+            Some(at) => less.without(at, &rest),
+            None => (less, rest),
+        }
+    }
+
+    /// How many of its terms are told as physics.
+    #[must_use]
+    pub fn told_terms(&self) -> usize {
+        self.terms.iter().filter(|term| term.is_told()).count()
+    }
+
+    /// The names of its terms that are told as physics, sorted: the same for sets of terms that are told alike.
     #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
-        let effects = self.terms.iter().filter(|term| **term != Term::LoadScale);
-        let mut names: Vec<&'static str> = effects.map(Term::name).collect();
+        let mut names: Vec<&'static str> = self.terms.iter().filter(|term| term.is_told()).map(Term::name).collect();
         names.sort_unstable();
         names
     }

@@ -1,5 +1,6 @@
 //! The law that a rig file states of its drive, and its refitted values.
 
+use super::candidates::building_up;
 use super::fit::{Data, Effort, Ended, Fit, fit};
 use super::held_out::{missing_forces, rms};
 use super::law::Side;
@@ -161,5 +162,6 @@ pub fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_
         fit(data, &model, &start, noise, Effort::FULL)
     });
     let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
+    let best = if best.model.terms.iter().any(Term::is_friction) { building_up(data, best) } else { best };
     best.log_likelihood.is_finite().then_some(best)
 }

@@ -5,9 +5,10 @@
 
 use super::innovations::Innovations;
 use super::input::Inputs;
-use super::law::DriveLaw;
+use super::law::{Acting, DriveLaw};
 use super::matrix::{Matrix, propagated, transposed_product};
 use super::noise::Noise;
+use super::presliding::Slips;
 use super::trial::DriveTrial;
 
 /// Kalman gains of one body along a trial.
@@ -96,17 +97,21 @@ pub fn one_body(
         Innovations { innovation: vec![0.0; rows], variance: gains.variance.clone(), ..Innovations::default() };
     out.velocity = vec![0.0; rows];
     let inertia = if trial.force.is_some() { law.inertia - law.tool_inertia } else { law.inertia };
-    let mut state = [0.0; 2];
+    let (mut state, mut slips) = ([0.0; 2], Slips::default());
     for row in 0..rows {
         if trial.restart[row] {
             state = [trial.position[row], trial.rate_after(row)];
+            slips = Slips::default();
         } else {
             let step = trial.time[row] - trial.time[row - 1];
             let force = inputs.force[row];
-            state = law.advance(state, inputs.effort[row] - force, force, inertia, step);
+            let friction_factor = law.friction_course.factor(trial.time[row] - trial.time[0], state[0]);
+            let acting = Acting { push: inputs.effort[row] - force, force, friction_factor };
+            state = law.advance(state, &mut slips, &acting, inertia, step);
             let innovation = trial.position[row] - state[0];
             let gain = gains.gain[row];
             state = [state[0] + gain[0] * innovation, state[1] + gain[1] * innovation];
+            law.friction.follow(&mut slips, gain[0] * innovation);
             out.innovation[row] = innovation;
         }
         out.velocity[row] = state[1];

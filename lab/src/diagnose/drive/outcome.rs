@@ -1,5 +1,6 @@
 //! What the recordings say of a drive: the law, its evidence, what else would do, and what is left.
 
+use super::candidates::is_likelier;
 use super::criteria::{
     COMPARISONS, CURVE_PART, LEAST_GAIN, LEAST_PART_OF_EFFORT, LEAST_THROUGHOUT, MOST_LEFT, UNKNOWN_PART_OF_EFFORT,
 };
@@ -7,7 +8,7 @@ use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::{Data, Fit};
 use super::held_out::{Folds, HeldOut, missing_forces, rms};
 use super::interval::intervals;
-use super::law::{DriveLaw, Side};
+use super::law::{Along, DriveLaw, Side};
 use super::model::index;
 use super::noise::Noise;
 use super::nominal::{
@@ -185,8 +186,10 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
     loop {
         let held = folds.held_out(&search.data, &fit, common);
         let first = search.nominal.model.terms.len();
-        let without: Vec<(Fit, HeldOut)> = (first..fit.model.terms.len())
-            .map(|at| {
+        let told: Vec<usize> = (first..fit.model.terms.len()).filter(|at| fit.model.terms[*at].is_told()).collect();
+        let without: Vec<(Fit, HeldOut)> = told
+            .iter()
+            .map(|&at| {
                 let less = without(search, &fit, at);
                 let left = folds.held_out(&search.data, &less, common);
                 (less, left)
@@ -197,13 +200,13 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
         let carries =
             |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
         let needless = (0..without.len())
-            .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[first + nth]));
+            .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[told[*nth]]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.density.total_cmp(&without[*b].1.density)) {
             fit = without[nth].0.clone();
             continue;
         }
         let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
-            at: first + nth,
+            at: told[nth],
             held_out_share: share(left).clamp(0.0, 1.0),
             p_value: (COMPARISONS * p_value(&fit, less)).min(1.0),
             without: rms(&left.missing),
@@ -215,10 +218,8 @@ fn believed(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) ->
 
 /// `fit` without term `at`, refitted; terms that cannot stand without it go with it.
 fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
-    let mut less = fit.clone();
-    less.values.drain(fit.model.values_of(at));
-    less.model.terms.remove(at);
-    if less.model == search.nominal.model { search.nominal.clone() } else { search.polished(&less) }
+    let (model, values) = fit.model.without(at, &fit.values);
+    search.lessened(fit, model, values)
 }
 
 /// Likelihood-ratio test of `more` against `less`.
@@ -244,7 +245,7 @@ fn alternatives(
     let before = rms(&refitted.missing);
     let is_open = |other: &&Fit| {
         other.model.names() != fit.model.names()
-            && other.model.terms.len() <= fit.model.terms.len()
+            && other.model.told_terms() <= fit.model.told_terms()
             && (fit.log_likelihood - other.log_likelihood < LEAST_GAIN
                 || search.worth(fit, other).throughout < LEAST_THROUGHOUT)
     };
@@ -275,7 +276,8 @@ fn verdict(search: &Search<'_>, fit: &Fit, [given, refitted, improved]: [f64; 3]
         };
     }
     let is_left = improved > OVER_NOISE * noise
-        && (above(improved) > MOST_LEFT * above(refitted) || a_curve_does_better(search, fit));
+        && (above(improved) > MOST_LEFT * above(refitted) || a_curve_does_better(search, fit))
+        || a_friction_that_changes_does_better(search, fit);
     if is_left { Verdict::PartlyExplained } else { Verdict::Explained }
 }
 
@@ -284,17 +286,45 @@ const CURVE_KNOTS: usize = 24;
 
 /// Whether a load by position of no law takes most of what the terms of `fit` leave, where that is much: then they are not all of it.
 fn a_curve_does_better(search: &Search<'_>, fit: &Fit) -> bool {
-    let left = search.unexplained(fit);
-    if fit.model.has_link() || left < MOST_LEFT * 0.5 * search.unexplained(&search.nominal) {
+    let scales = &search.scales;
+    let spacing = scales.travel / (CURVE_KNOTS - 1) as f64;
+    leaves_much(search, fit)
+        && is_halved_by(search, fit, Term::Curve { origin: scales.lowest, spacing, count: CURVE_KNOTS }, CURVE_KNOTS)
+}
+
+/// Knots of a course of friction over the time of a trial: what warms up or wears does so slowly.
+const TIME_KNOTS: usize = 6;
+
+/// Whether dry friction that changes with time or place takes most of what the same friction leaves where it is always the same, where that
+/// is much: then it is not the physics of this drive.
+fn a_friction_that_changes_does_better(search: &Search<'_>, fit: &Fit) -> bool {
+    if !fit.model.terms.iter().any(Term::is_friction) || !leaves_much(search, fit) {
         return false;
     }
     let scales = &search.scales;
-    let curve =
-        Term::Curve { origin: scales.lowest, spacing: scales.travel / (CURVE_KNOTS - 1) as f64, count: CURVE_KNOTS };
+    let over = |along: Along, origin: f64, length: f64, count: usize| {
+        let course = Term::FrictionCourse { along, origin, spacing: length / (count - 1) as f64, count };
+        is_halved_by(search, fit, course, count)
+    };
+    over(Along::Time, 0.0, scales.duration_s, TIME_KNOTS)
+        || over(Along::Place, scales.lowest, scales.travel, CURVE_KNOTS)
+}
+
+/// Whether `fit`, of a rigid drive, leaves so much of what the nominal law lacks, and of the effort, that its names are doubted.
+fn leaves_much(search: &Search<'_>, fit: &Fit) -> bool {
+    let left = search.unexplained(fit);
+    !fit.model.has_link()
+        && left > MOST_LEFT * 0.5 * search.unexplained(&search.nominal)
+        && left > LEAST_PART_OF_EFFORT * search.scales.effort
+}
+
+/// Whether `term` of no law, with `count` knots, takes half of what `fit` leaves, in root mean square.
+fn is_halved_by(search: &Search<'_>, fit: &Fit, term: Term, count: usize) -> bool {
     let mut start = fit.clone();
-    start.model.terms.push(curve);
-    start.values.extend([0.0; CURVE_KNOTS]);
-    search.unexplained(&search.polished(&start)) < CURVE_PART * left
+    start.model.terms.push(term);
+    start.values.extend(vec![0.0; count]);
+    let better = search.polished(&start);
+    is_likelier(&better, fit) && search.unexplained(&better) < CURVE_PART * search.unexplained(fit)
 }
 
 #[cfg(test)]
@@ -461,6 +491,26 @@ mod tests {
         assert!(low - 0.004 <= 0.4 && 0.4 <= high + 0.004 && high - low < 0.04, "{low} {high}");
         let [_, refitted, improved] = [0, 1, 2].map(|of| rms(&outcome.missing[of]));
         assert!(improved < 1.3 * outcome.expected_noise && refitted > 1.5 * improved, "{refitted} {improved}");
+    }
+
+    /// A bristle of thirty encoder steps: with friction that is there at once three times what the encoder leaves is left.
+    #[test]
+    fn friction_that_builds_up_over_a_way_is_dry_friction_and_nothing_else() {
+        let outcome = identified(&TestDrive { coulomb: 0.4, presliding: 1.5e-4, ..TestDrive::PLAIN }, 0.75, 5.0, 33);
+        assert_eq!((outcome.verdict, outcome.chosen.model.names()), (Verdict::Explained, vec!["coulomb_friction"]));
+        let level = outcome.chosen.values[outcome.chosen.model.values_of(0).start];
+        // Four chords follow the exponential to a thirtieth of the friction, on the way of a turn alone.
+        assert!((level - 0.4).abs() < 0.01, "{level}");
+        let left = rms(&outcome.missing[2]);
+        assert!(left < 1.3 * outcome.expected_noise, "{left} {}", outcome.expected_noise);
+    }
+
+    #[test]
+    fn friction_by_the_root_of_the_speed_stands_for_itself() {
+        let outcome = identified(&TestDrive { root: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 34);
+        assert_eq!(outcome.chosen.model.names(), ["sublinear_friction"]);
+        let own = outcome.chosen.model.values_of(0);
+        assert!((outcome.chosen.values[own.start + 1] - 0.5).abs() < 0.03, "{:?}", outcome.chosen.values);
     }
 
     #[test]

@@ -1,15 +1,16 @@
 //! Which terms the recordings ask for: sets grown from the best few, and pruned.
 
-use super::candidates::{one_body, simpler, tried};
+use super::candidates::{belongs, idle_friction, is_likelier, one_body, simpler, stribeck_for, tried, whole_friction};
 use super::criteria::{
-    BLOCK_ROWS, BLOCK_S, LEAST_FREE_SHAPE_PART, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL,
-    LEAST_PART_OF_EFFORT, LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, MOST_LEFT_OF_MOVED, NEGLIGIBLE_PART,
+    BLOCK_ROWS, BLOCK_S, LEAST_FREE_SHAPE_PART, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_EFFORT,
+    LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, MOST_LEFT_OF_MOVED, MOST_OF_THE_REST, NEGLIGIBLE_PART,
 };
 use super::filter::innovations;
 use super::fit::{Data, Effort, Fit, fit};
 use super::law::Side;
 use super::links;
-use super::term::Scales;
+use super::model::Model;
+use super::term::{Scales, Term};
 use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
@@ -79,22 +80,20 @@ impl Search<'_> {
         }
     }
 
-    /// Whether the likelihood alone speaks for `more`.
-    fn is_likelier(&self, more: &Fit, less: &Fit) -> bool {
-        let values = more.values.len().saturating_sub(less.values.len()).max(1);
-        more.log_likelihood - less.log_likelihood > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
-    }
-
     /// Whether `more` is worth its terms.
     #[must_use]
     pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
         let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape(&self.scales)).count();
-        let least_part = if shapes(more) > shapes(less) { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
+        let is_free = shapes(more) > shapes(less);
+        let least_part = if is_free { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
+        let takes_the_rest = !is_free
+            && worth.share > MOST_OF_THE_REST
+            && self.unexplained(less) > LEAST_PART_OF_EFFORT * self.scales.effort;
         self.explains_rows(more, less)
-            && self.is_likelier(more, less)
+            && is_likelier(more, less)
             && worth.share > LEAST_SHARE
-            && worth.part_of_all > least_part
+            && (worth.part_of_all > least_part || takes_the_rest)
             && worth.throughout > LEAST_THROUGHOUT
     }
 
@@ -102,7 +101,7 @@ impl Search<'_> {
     /// or a weight move more than the effort does, a rigid law does that leaves by one more term less than half of what `less` leaves; one
     /// with a link can always follow.
     fn explains_rows(&self, more: &Fit, less: &Fit) -> bool {
-        let is_one_more = more.model.terms.len() == less.model.terms.len() + 1;
+        let is_one_more = more.model.told_terms() == less.model.told_terms() + 1;
         let most =
             if more.model.has_link() || !is_one_more { 0.0 } else { MOST_LEFT_OF_MOVED * self.unexplained(less) };
         self.unexplained(more) < self.scales.effort.max(most)
@@ -131,7 +130,7 @@ impl Search<'_> {
             for base in &beam {
                 let mut quick = self.quickly_grown(base);
                 quick.truncate(POLISHED);
-                grown.extend(quick.iter().map(|quick| self.polished(quick)));
+                grown.extend(quick.iter().map(|quick| self.without_idle_friction(self.polished(quick))));
             }
             let rigid = beam.iter().find(|fit| !fit.model.has_link()).filter(|_| !best.model.has_link());
             if let Some(rigid) = rigid
@@ -152,7 +151,7 @@ impl Search<'_> {
             match worthy.max_by(|a, b| price(a).total_cmp(&price(b))) {
                 Some(top) => (best, is_waiting) = (top.clone(), false),
                 // Two terms can be worth it where neither is alone: a link hides friction, and friction a link.
-                None if !is_waiting && grown.iter().any(|fit| self.is_likelier(fit, &best)) => is_waiting = true,
+                None if !is_waiting && grown.iter().any(|fit| is_likelier(fit, &best)) => is_waiting = true,
                 None => break,
             }
             beam = next_beam(grown, &best, is_waiting);
@@ -161,7 +160,7 @@ impl Search<'_> {
             }
         }
         say("the drive: without each term");
-        let fit = self.believed(self.pruned(best), &sets);
+        let fit = self.believed(self.pruned(self.creeping(best, &mut sets)), &sets);
         Chosen { fit, sets: distinct(sets) }
     }
 
@@ -213,6 +212,44 @@ impl Search<'_> {
         if around.log_likelihood > fit.log_likelihood { around } else { fit }
     }
 
+    /// `best`, or the same with friction that is larger when creeping, which other terms can have hidden when it was tried.
+    fn creeping(&self, best: Fit, sets: &mut Vec<Fit>) -> Fit {
+        let has_others = best.model.told_terms() > self.nominal.model.told_terms() + 1;
+        let coulomb = best.model.terms.iter().position(|term| *term == Term::Coulomb);
+        let Some(at) = coulomb.filter(|_| has_others && !best.model.has_link()) else { return best };
+        if best.model.has("sublinear_friction") || self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort {
+            return best;
+        }
+        let tried =
+            stribeck_for(&best, at).map(|(model, values)| fit(&self.data, &model, &values, best.noise, Effort::QUICK));
+        let likeliest = tried.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
+        let polished = likeliest.map(|fit| self.polished(&fit)).filter(|fit| !is_at_end(fit));
+        sets.extend(polished.clone());
+        polished.filter(|fit| self.is_worth(fit, &best)).unwrap_or(best)
+    }
+
+    /// The smaller `model` in the place of that of `fit`, fitted from `values`. A link can have stood for a part of its friction.
+    #[must_use]
+    pub fn lessened(&self, fit: &Fit, model: Model, values: Vec<f64>) -> Fit {
+        if model == self.nominal.model {
+            return self.nominal.clone();
+        }
+        let less = self.polished(&Fit { model, values, ..fit.clone() });
+        if fit.model.has_link() && !less.model.has_link() {
+            return self.polished(&whole_friction(&self.data, less));
+        }
+        less
+    }
+
+    /// `fit` without parts of its friction that ended where their search did.
+    fn without_idle_friction(&self, mut fit: Fit) -> Fit {
+        while let Some(at) = idle_friction(&fit) {
+            let (model, values) = fit.model.without(at, &fit.values);
+            fit = self.polished(&Fit { model, values, ..fit });
+        }
+        fit
+    }
+
     /// `fit`, where a link shows that another term was one too many, with the simpler law in its place: a weak link makes Stribeck friction
     /// of Coulomb friction.
     fn within_ends(&self, fit: Fit) -> Fit {
@@ -230,12 +267,9 @@ impl Search<'_> {
         'again: loop {
             for at in (self.nominal.model.terms.len()..best.model.terms.len()).rev() {
                 for (model, values) in simpler(&best, at) {
-                    let less = if model == self.nominal.model {
-                        self.nominal.clone()
-                    } else {
-                        self.polished(&Fit { model, values, ..best.clone() })
-                    };
-                    if !self.is_worth(&best, &less) {
+                    let less = self.lessened(&best, model, values);
+                    let is_told = best.model.terms[at].is_told();
+                    if !(if is_told { self.is_worth(&best, &less) } else { belongs(&self.data, &best, &less) }) {
                         best = less;
                         continue 'again;
                     }

@@ -1,6 +1,6 @@
 //! What a model of the drive can hold beyond mass and viscous friction, and the values that each term brings.
 
-use super::law::{DriveLaw, Link, Periodic, PositionCurve, Side};
+use super::law::{Along, DriveLaw, FrictionCourse, Link, Periodic, PositionCurve, Side};
 
 /// A term with its law.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +11,8 @@ pub enum Term {
     Stribeck,
     /// Friction that grows with a power of the speed below one, beside dry friction.
     Sublinear,
+    /// The way over which dry friction builds up: no effect of its own, but a part of every dry friction.
+    Presliding,
     /// Friction in proportion to the contact force.
     LoadFriction,
     /// A constant load.
@@ -35,6 +37,17 @@ pub enum Term {
     ToolInertia,
     /// A factor of the load that a rigid-body model explains: a value of the rig file and no effect.
     LoadScale,
+    /// Dry friction that changes, of no law, by `count` knots.
+    FrictionCourse {
+        /// What it changes with.
+        along: Along,
+        /// First knot, s after the first row, or m or rad.
+        origin: f64,
+        /// Distance of two knots.
+        spacing: f64,
+        /// How many.
+        count: usize,
+    },
     /// A load by position of no law, by `count` knots.
     Curve {
         /// First knot, m or rad.
@@ -183,6 +196,11 @@ const FORCE_STEP: f64 = 0.05;
 /// Exponents of the speed that are told from dry and from viscous friction.
 const SUBLINEAR_EXPONENTS: (f64, f64) = (0.15, 0.9);
 
+/// Ways over which dry friction can build up, over the travel: what bends a fiftieth of the travel before it slides is a spring, and what
+/// bends a millionth is rigid.
+const SHORTEST_PRESLIDING: f64 = 1e-6;
+const LONGEST_PRESLIDING: f64 = 0.02;
+
 /// Shares of the inertia that a load beyond a link can have.
 const LOAD_SHARES: (f64, f64) = (0.2, 0.97);
 
@@ -207,6 +225,7 @@ impl Term {
             Self::Coulomb => "coulomb_friction",
             Self::Stribeck => "stribeck_friction",
             Self::Sublinear => "sublinear_friction",
+            Self::Presliding => "presliding",
             Self::LoadFriction => "load_dependent_friction",
             Self::ConstantLoad | Self::AngleLoad => "gravity_load",
             Self::Cogging => "cogging",
@@ -218,8 +237,21 @@ impl Term {
             Self::ForceDelay => "channel_delay",
             Self::ToolInertia => "tool_inertia",
             Self::LoadScale => "load_scale",
+            Self::FrictionCourse { .. } => "friction_course",
             Self::Curve { .. } => "learned",
         }
+    }
+
+    /// Whether it is told as physics of its own.
+    #[must_use]
+    pub const fn is_told(&self) -> bool {
+        !matches!(self, Self::Presliding | Self::LoadScale)
+    }
+
+    /// Whether it is dry friction, which holds at rest.
+    #[must_use]
+    pub const fn is_friction(&self) -> bool {
+        matches!(self, Self::Coulomb | Self::Stribeck | Self::Sublinear | Self::LoadFriction)
     }
 
     /// Whether it parts motor and load.
@@ -257,6 +289,9 @@ impl Term {
             Self::Sublinear => {
                 vec![positive, Range::absolute(SUBLINEAR_EXPONENTS.0, SUBLINEAR_EXPONENTS.1, 0.1)]
             }
+            Self::Presliding => {
+                vec![Range::relative(SHORTEST_PRESLIDING * scales.travel, LONGEST_PRESLIDING * scales.travel)]
+            }
             Self::LoadFriction => vec![Range::absolute(0.0, 1.0, 0.02)],
             Self::ConstantLoad => vec![any],
             // An arm's weight comes round once a turn, beside a constant; on a slide nobody knows the length.
@@ -284,6 +319,7 @@ impl Term {
                 Range::absolute(1.0 - WORST_LOAD, 1.0 + WORST_LOAD, 0.1 * LOAD_DEVIATION)
                     .known(Prior { mean: 1.0, deviation: LOAD_DEVIATION }),
             ],
+            Self::FrictionCourse { count, .. } => vec![Range::absolute(-1.0, f64::INFINITY, 0.1); *count],
             Self::Curve { count, .. } => vec![any; *count],
         }
     }
@@ -331,6 +367,7 @@ impl Term {
                 law.friction.sublinear_exponent = values[1];
                 law.friction.reference_speed = scales.speed;
             }
+            Self::Presliding => law.friction.presliding = values[0],
             Self::LoadFriction => law.friction.load_share = values[0],
             Self::ConstantLoad => law.offset += values[0],
             Self::AngleLoad if scales.is_rotary => {
@@ -362,6 +399,10 @@ impl Term {
             Self::ForceDelay => law.force_delay_s = values[0],
             Self::ToolInertia => law.tool_inertia = values[0],
             Self::LoadScale => law.load_scale = values[0],
+            Self::FrictionCourse { along, origin, spacing, .. } => {
+                let curve = PositionCurve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
+                law.friction_course = FrictionCourse { along: *along, curve };
+            }
             Self::Curve { origin, spacing, .. } => {
                 law.curve = PositionCurve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
             }

@@ -31,6 +31,10 @@ pub struct TestDrive {
     pub viscous: f64,
     /// N, dry friction.
     pub coulomb: f64,
+    /// m, length over which dry friction builds up after a turn (Dahl's); zero: at once.
+    pub presliding: f64,
+    /// N, friction that grows with the root of the speed, at 0.1 m/s.
+    pub root: f64,
     /// N, constant load.
     pub load: f64,
     /// N^2 s, density of a white force.
@@ -68,6 +72,8 @@ impl TestDrive {
         mass: 0.8,
         viscous: 4.0,
         coulomb: 0.0,
+        presliding: 0.0,
+        root: 0.0,
         load: 0.0,
         disturbance: 0.0,
         encoder: 5e-6,
@@ -91,7 +97,7 @@ impl TestDrive {
         };
         let (mut x, mut v) = (reference(0.0), 0.0);
         let (mut load_x, mut load_v) = (x, v);
-        let (mut command, mut drives) = (0.0, 0.0);
+        let (mut command, mut drives, mut bristle) = (0.0, 0.0, 0.0);
         let (mut time, mut position, mut effort) = (Vec::new(), Vec::new(), Vec::new());
         for row in 0..rows {
             let t = row as f64 * period;
@@ -121,9 +127,16 @@ impl TestDrive {
                     load_v += step * (passed - on_load * load_v) / (link.load_share * self.mass);
                     load_x += step * load_v;
                 }
-                let free = v + step * (drives - passed - (self.viscous - on_load) * v - self.load + white) / motor;
-                let held = step * self.coulomb / motor;
+                let root = self.root * v.signum() * (v.abs() / 0.1).sqrt();
+                let dry = root + bristle;
+                let free =
+                    v + step * (drives - passed - dry - (self.viscous - on_load) * v - self.load + white) / motor;
+                let at_once = if self.presliding > 0.0 { 0.0 } else { self.coulomb };
+                let held = step * at_once / motor;
                 v = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
+                if self.presliding > 0.0 {
+                    bristle += step * (self.coulomb * v - bristle * v.abs()) / self.presliding;
+                }
                 x += step * v;
             }
         }

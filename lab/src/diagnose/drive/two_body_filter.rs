@@ -3,9 +3,10 @@
 
 use super::innovations::Innovations;
 use super::input::Inputs;
-use super::law::{DriveLaw, Link, Side};
+use super::law::{Acting, DriveLaw, Link, Side};
 use super::matrix::{Matrix, exponential, identity, product, propagated, transposed_product};
 use super::noise::Noise;
+use super::presliding::Slips;
 use super::trial::DriveTrial;
 
 /// Number of states of two bodies: motor position and velocity, load position and velocity.
@@ -171,8 +172,16 @@ fn after_coupled_row(
 }
 
 /// The pair over a row under constant effort and force; tells whether the sides were coupled for most of it.
-fn advance_pair(law: &DriveLaw, link: &Link, state: &mut [f64; STATES], input: [f64; 2], pair: &Pair) -> bool {
+fn advance_pair(
+    law: &DriveLaw,
+    link: &Link,
+    state: &mut [f64; STATES],
+    slips: &mut Slips,
+    input: [f64; 2],
+    pair: &Pair,
+) -> bool {
     if pair.substeps > 1
+        && law.friction.presliding == 0.0
         && let Some(after) = after_coupled_row(law, link, state, input, pair)
     {
         *state = after;
@@ -197,7 +206,8 @@ fn advance_pair(law: &DriveLaw, link: &Link, state: &mut [f64; STATES], input: [
         let stretch_rate = motor_rate - (mid - braked) / load;
         let passed = link.transmitted(ahead + pair.curving * stretch_rate, middle_v - middle_load_v);
         coupled += usize::from(ahead.abs() >= 0.5 * link.play);
-        let [x, v] = law.advance([x, v], effort - passed, force, motor, short);
+        let acting = Acting { push: effort - passed, force, friction_factor: 1.0 };
+        let [x, v] = law.advance([x, v], slips, &acting, motor, short);
         let after = load_v + short * (passed - braked) / load;
         *state = [x, v, load_x + 0.5 * short * (load_v + after), after];
     }
@@ -272,12 +282,13 @@ pub fn two_bodies(
     let densities = [noise.disturbance(), LOAD_DENSITY_SHARE * noise.disturbance() + trial.force_density];
     let mut pairs: Vec<Pair> = Vec::new();
     let mut history: Vec<PairRow> = Vec::with_capacity(if smooth { rows } else { 0 });
-    let mut state = [0.0; STATES];
+    let (mut state, mut slips) = ([0.0; STATES], Slips::default());
     let mut uncertainty = Uncertainty::default();
     for row in 0..rows {
         if trial.restart[row] {
             let (position, rate) = (trial.position[row], trial.rate_after(row));
             state = [position, rate, position, rate];
+            slips = Slips::default();
             let effort = inputs.effort[(row + 1).min(rows - 1)];
             uncertainty = Uncertainty { covariance: unknown_pair(trial, &link, encoder, effort), ..uncertainty };
             uncertainty.steady_rows = 0;
@@ -290,12 +301,13 @@ pub fn two_bodies(
         let step = trial.time[row] - trial.time[row - 1];
         let at = pair_of(&mut pairs, step, 1e-9 * trial.period_s, || Pair::new(law, &link, densities, step));
         let pair = &pairs[at];
-        let coupled = advance_pair(law, &link, &mut state, [inputs.effort[row], inputs.force[row]], pair);
+        let coupled = advance_pair(law, &link, &mut state, &mut slips, [inputs.effort[row], inputs.force[row]], pair);
         let regime = usize::from(coupled);
         uncertainty.update(at, pair, regime, measured, encoder);
         let Uncertainty { gain, variance, .. } = uncertainty;
         let innovation = trial.position[row] - state[measured];
         state.iter_mut().zip(gain).for_each(|(state, gain)| *state += gain * innovation);
+        law.friction.follow(&mut slips, gain[0] * innovation);
         (out.innovation[row], out.variance[row], out.velocity[row]) = (innovation, variance, state[measured + 1]);
         if smooth {
             history.push(PairRow { gain, coupled, pair: at });
@@ -381,7 +393,7 @@ mod tests {
         assert_eq!(pair.substeps, 1);
         let (mut stepped, mut exact) = ([1e-3, 0.0, 0.0, 0.0], [1e-3, 0.0, 0.0, 0.0]);
         for row in 0..500 {
-            advance_pair(&law, &link, &mut stepped, [0.0; 2], &pair);
+            advance_pair(&law, &link, &mut stepped, &mut Slips::default(), [0.0; 2], &pair);
             exact = pair.transition[1].map(|line| line.iter().zip(&exact).map(|(a, x)| a * x).sum());
             let stretch = |state: [f64; STATES]| state[0] - state[2];
             // By the stretch in the middle of a step alone the angle would be wrong by 0.0012 a row, 0.6 at the end. What is left is
@@ -397,7 +409,7 @@ mod tests {
         // Pulled from both ends by 3 N.
         let mut state = [3.0 / 12_000.0, 0.0, 0.0, 0.0];
         for _ in 0..500 {
-            advance_pair(&law, &link, &mut state, [3.0, 3.0], &pair);
+            advance_pair(&law, &link, &mut state, &mut Slips::default(), [3.0, 3.0], &pair);
         }
         assert!((state[0] - state[2] - 3.0 / 12_000.0).abs() < 1e-12, "{state:?}");
     }
@@ -415,7 +427,7 @@ mod tests {
         let at_once = after_coupled_row(&law, &link, &start, [40.0, 5.0], &row).expect("it stays coupled");
         let mut stepped = start;
         (0..1000).for_each(|_| {
-            advance_pair(&law, &link, &mut stepped, [40.0, 5.0], &short);
+            advance_pair(&law, &link, &mut stepped, &mut Slips::default(), [40.0, 5.0], &short);
         });
         // The short steps err by the square of their own swing, (1.6e-3)^2 / 24, of what moves within the row: 1e-3 of 0.2 m/s.
         for (state, scale) in [(0, 2e-4), (1, 0.2), (2, 2e-4), (3, 0.2)] {
