@@ -81,6 +81,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// Frequencies, Hz, of which it has one where it is a line of the spectrum, as a tone of the mains is: no law of a contact has one.
+    fn lines(&self) -> &'static [f64] {
+        &[]
+    }
+
     /// Acts on the contact. `values` are in the order of the form's parameters.
     fn act_on_contact(&self, _form: usize, _values: &[f64], _state: &mut EffectState, _touch: &mut ContactState) {}
 

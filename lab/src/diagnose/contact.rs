@@ -7,6 +7,7 @@ pub mod fit;
 pub mod held_out;
 pub mod interval;
 pub mod learned;
+mod lines;
 pub mod model;
 pub mod motion;
 pub mod nominal;

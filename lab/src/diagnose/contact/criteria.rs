@@ -23,6 +23,10 @@ pub const FAR_SHARES: [f64; 2] = [0.33, 0.25];
 /// Part of the force's deviation below which nothing is told as missing, whatever its significance: no contact is known that well.
 pub const LEAST_PART_OF_FORCE: f64 = 0.002;
 
+/// Power of a line of the spectrum over that of the sensors' noise from which it is told: a tone of a seventh of the noise's deviation.
+/// The rows of a minute tell one of a hundredth, which nobody would call missing physics.
+pub const LEAST_LINE_POWER: f64 = 0.01;
+
 /// Vuong's statistic: 95 % of one side. What shows on a few occasions alone, such as a release, cannot reach more than their root; it is
 /// not asked of what takes [`LEAST_TOLD_SHARE`] of a mismatch far above the noise, for which nothing else is there.
 pub const LEAST_VUONG: f64 = 1.6;

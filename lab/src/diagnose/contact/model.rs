@@ -273,11 +273,17 @@ impl ContactModel {
     /// Frequencies of the waves that its effects hold, Hz.
     #[must_use]
     pub fn frequencies(&self, values: &[f64]) -> Vec<f64> {
-        let all = self.terms.iter().enumerate().flat_map(|(nth, term)| {
-            let own = values[self.first_value_of(nth)..].iter().zip(term.parameters());
-            own.filter(|(_, parameter)| parameter.limit == Limit::RepeatedCycles).map(|(value, _)| *value)
-        });
-        all.collect()
+        let terms = self.terms.iter().enumerate();
+        let waves = terms.flat_map(|(nth, term)| values[self.first_value_of(nth)..].iter().zip(term.parameters()));
+        waves.filter(|(_, parameter)| parameter.limit == Limit::RepeatedCycles).map(|(value, _)| *value).collect()
+    }
+
+    /// Frequency of term `nth`, Hz, where it is a line of the spectrum.
+    #[must_use]
+    pub fn line(&self, values: &[f64], nth: usize) -> Option<f64> {
+        let named = self.terms[nth].parameters().iter().position(|parameter| parameter.name == "frequency")?;
+        let is_line = !self.terms[nth].effect.lines().is_empty();
+        is_line.then(|| values[self.first_value_of(nth) + named])
     }
 
     /// Whether a value of an effect ended at an end of what the recordings can show.

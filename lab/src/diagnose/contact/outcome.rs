@@ -2,13 +2,14 @@
 
 use super::circumstances::Circumstances;
 use super::criteria::{
-    COMPARISONS, LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, LEAST_VUONG, MOST_LEFT,
-    NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
+    COMPARISONS, LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE,
+    LEAST_VUONG, MOST_LEFT, NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
 };
 use super::fit::{Data, Effort, Fit, Rest};
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::intervals;
 use super::learned::{LearnedCurve, learned};
+use super::lines::line_beyond;
 use super::model::index;
 use super::nominal::{NominalContact, law_of, nominal_fit};
 use super::selection::{Chosen, Search, sorted_names};
@@ -179,7 +180,12 @@ fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, 
             let taken = left - held.energy;
             if taken > 0.0 { taken / (left - expected).max(taken) } else { 0.0 }
         };
-        let needless = (0..without.len()).filter(|nth| share(without[*nth].1) < LEAST_HELD_OUT_SHARE);
+        // A line is no part of what a law leaves.
+        let is_confirmed = |(less, left, _): &(Fit, f64, f64)| match line_beyond(&fit, less) {
+            Some(_) => left - held.energy > LEAST_LINE_POWER * expected,
+            None => share(*left) >= LEAST_HELD_OUT_SHARE,
+        };
+        let needless = (0..without.len()).filter(|nth| !is_confirmed(&without[*nth]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
             fit = without[nth].0.clone();
             continue;

@@ -63,7 +63,7 @@ impl Search<'_> {
     /// Whether `fit` is a law that its effects stand for: no value at the end of what the recordings show, none by which an effect is not
     /// what it is called, no wave that has slid into step with the motion, and no spring whose force falls on the way in, unless the rig
     /// file has one.
-    fn is_admissible(&self, fit: &Fit) -> bool {
+    pub(super) fn is_admissible(&self, fit: &Fit) -> bool {
         let falls = |fit: &Fit| fit.model.has_falling_spring(&fit.values);
         let mut frequencies = fit.model.frequencies(&fit.values).into_iter();
         !fit.model.is_at_end(&fit.values)
@@ -142,13 +142,14 @@ impl Search<'_> {
         sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         let fit = self.surviving(fit, &sets);
         let fit = self.simplest(fit, &sets);
+        let fit = self.with_lines(fit, &mut sets);
         Chosen { fit, sets }
     }
 
     /// Takes each row for what `best` makes of the motion's uncertainty, and for what it leaves: an inertia shows errors of the
     /// acceleration, a stiffer law more of the position's, and the better a law the more its finest rows are worth. Returns `best` under
     /// these weights.
-    fn weigh_by(&mut self, best: Fit) -> Fit {
+    pub(super) fn weigh_by(&mut self, best: Fit) -> Fit {
         self.data = self.data.weighed(&best);
         self.coarse = self.coarse.weighed(&best);
         self.nominal = self.data.again(&self.nominal);

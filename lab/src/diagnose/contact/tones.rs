@@ -1,6 +1,7 @@
 //! Which frequencies of a form that repeats are worth a trial: those at which the residual itself is loudest (Lomb's periodogram).
 
 use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 use super::fit::{Data, Fit};
 use crate::effects::{FrequencySearch, Start, ToneWeight};
@@ -37,6 +38,35 @@ pub fn is_in_step(data: &Data<'_>, frequency: f64) -> bool {
     Rows::of_motion(data).is_loud_at(frequency)
 }
 
+/// Part by which a line of the spectrum may be off the frequency that it is known by: twice what mains are.
+pub const LINE_TOLERANCE: f64 = 0.008;
+
+/// Where the spectrum around a line is looked at, of its frequency to either side: beyond the skirts of the line itself, and no farther than
+/// a spectrum stays alike.
+const AROUND: [f64; 7] = [0.015, 0.0225, 0.03, 0.0375, 0.045, 0.0525, 0.06];
+
+/// Whether `frequency`, Hz, is that of one of `lines`.
+#[must_use]
+pub fn is_on_a_line(lines: &[f64], frequency: f64) -> bool {
+    lines.iter().any(|line| (frequency / line - 1.0).abs() < LINE_TOLERANCE)
+}
+
+/// Logarithm of one over the probability that noise is as loud at `frequency`, Hz, as `rest` is, a weighted residual: the harmonic F-test
+/// (D. J. Thomson, *Proc. IEEE* 70, 1982), its background from the spectrum around the line. Noise of any colour that is alike there, and
+/// a law's misfit, which has no lines, are both held against it.
+#[must_use]
+pub fn line_nats(data: &Data<'_>, rest: &[f64], frequency: f64) -> f64 {
+    let rows = Rows::windowed(data, rest);
+    let sides = AROUND.iter().flat_map(|part| [1.0 - part, 1.0 + part]);
+    let around: Vec<f64> = sides.map(|part| rows.power(part * frequency)).collect();
+    let background = around.iter().sum::<f64>() / around.len() as f64;
+    // A trial has a phase of its own, and with it two degrees of freedom, at each frequency.
+    let degrees = 2.0 * data.trials.len() as f64;
+    let ratio = rows.power(frequency) / background.max(f64::MIN_POSITIVE);
+    let chance = FisherSnedecor::new(degrees, degrees * around.len() as f64).map_or(1.0, |law| law.sf(ratio));
+    -chance.max(f64::MIN_POSITIVE).ln()
+}
+
 /// Time, weight and residual of each row that counts, a list a trial: each has a phase of its own.
 struct Rows(Vec<Vec<(f64, f64, f64)>>);
 
@@ -58,6 +88,19 @@ impl Rows {
             (0..trial.len()).map(row).filter(|(_, weight, _)| *weight != 0.0).collect::<Vec<_>>()
         };
         Self((0..data.trials.len()).map(trial).collect())
+    }
+
+    /// `rest` under Hann's window over each trial, which keeps what lies far from a frequency out of it.
+    fn windowed(data: &Data<'_>, rest: &[f64]) -> Self {
+        let trial = |(trial, start): (&super::trial::ContactTrial, usize)| {
+            let turn = std::f64::consts::TAU / trial.len().max(1) as f64;
+            let row = |row: usize| {
+                let window = 0.5 - 0.5 * (turn * (row as f64 + 0.5)).cos();
+                (trial.time[row], window, rest[start + row])
+            };
+            (0..trial.len()).map(row).collect()
+        };
+        Self(data.trials.iter().zip(data.starts()).map(trial).collect())
     }
 
     /// The positions themselves, about their mean.

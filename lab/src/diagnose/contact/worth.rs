@@ -74,6 +74,9 @@ impl Search<'_> {
     /// Whether `more` is worth its values.
     #[must_use]
     pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
+        if let Some(is_line) = self.is_worth_as_a_line(more, less) {
+            return is_line;
+        }
         let values = free(more).saturating_sub(free(less)).max(1);
         let worth = self.worth(more, less);
         // Far from the sensors' noise any bend of a law takes a little of what another one leaves.

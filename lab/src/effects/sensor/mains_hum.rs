@@ -10,6 +10,9 @@ use crate::rig::Word;
 /// See [`SPEC`].
 pub struct MainsHum;
 
+/// Frequencies of mains, Hz.
+const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+
 const NEWTON: Word = Word::new("N", "N m");
 
 static SPEC: EffectSpec = EffectSpec {
@@ -48,10 +51,13 @@ impl Effect for MainsHum {
             let most = (0.004 * mains / apart).ceil().clamp(2.0, 60.0);
             (mains - most * apart, apart, 2 * most as usize + 1)
         };
-        let frequencies: Vec<_> =
-            [50.0, 60.0].into_iter().filter(|mains| *mains < 0.42 / scene.step).map(band).collect();
+        let frequencies: Vec<_> = MAINS_HZ.into_iter().filter(|mains| *mains < 0.42 / scene.step).map(band).collect();
         let size = 0.01 * scene.force;
         (!frequencies.is_empty()).then_some(FrequencySearch { weight: ToneWeight::Even, frequencies, size })
+    }
+
+    fn lines(&self) -> &'static [f64] {
+        &MAINS_HZ
     }
 
     fn act_on_reading(&self, _form: usize, values: &[f64], reading: &mut Reading<'_>) {
