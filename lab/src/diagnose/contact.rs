@@ -1,6 +1,7 @@
 //! The contact by a model of its force: position in, force out.
 
 pub mod circumstances;
+mod colour;
 pub mod composed;
 pub mod criteria;
 pub mod fit;

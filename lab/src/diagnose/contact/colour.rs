@@ -1,0 +1,228 @@
+//! How loud a sensor's noise is that remembers from row to row, as behind a filter: by what a law leaves level by level of a wavelet transform.
+//!
+//! A sensor's noise is stated, or estimated, from row to row; what remembers is louder below. At each level its power is a median's, which
+//! a few events do not move (I. M. Johnstone and B. W. Silverman, *J. R. Statist. Soc. B* 59, 1997), of what is left beside position,
+//! velocity and acceleration at that level (incoherent power: J. S. Bendat and A. G. Piersol, *Random Data*, 2010): the least of what is found
+//! in free motion and in contact, slow and fast, because noise is there whatever the tool does, and a law's misfit is not. From the level on at
+//! which the law's own force is louder than what is left, a misfit could be all of it: there the noise is taken to go on as above.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::fit::Fit;
+use super::trial::ContactTrial;
+
+/// Low-pass filter of four vanishing moments (I. Daubechies, *Comm. Pure Appl. Math.* 41, 1988).
+const FILTER: [f64; 8] = [
+    0.230_377_813_308_855_2,
+    0.714_846_570_552_541_5,
+    0.630_880_767_929_590_4,
+    -0.027_983_769_416_983_85,
+    -0.187_034_811_718_881_1,
+    0.030_841_381_835_986_96,
+    0.032_883_011_666_982_95,
+    -0.010_597_401_784_997_28,
+];
+
+/// Median of the size of a normal variable of deviation one.
+const NORMAL_MEDIAN: f64 = 0.674_489_75;
+
+/// Coefficients that a median is taken of at the least: a deviation is known to an eighth then.
+const LEAST_COUNT: usize = 80;
+
+/// Share of all coefficients that what the tool does has to have to be asked.
+const LEAST_PART: f64 = 0.05;
+
+/// Residual, law's force, position, velocity and acceleration, the first two over the row's own deviation.
+const COLUMNS: usize = 5;
+
+/// Mean square of the noise behind what `fit` leaves over the `noise` that is stated of each row; at least one.
+#[must_use]
+pub fn noise_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residual: &[Vec<f64>]) -> f64 {
+    let mut pyramids: Vec<Pyramid> = (0..trials.len())
+        .map(|number| Pyramid::of(&trials[number], fit, number, &noise[number], &residual[number]))
+        .collect();
+    let (mut power, mut share, mut last) = (0.0, 1.0, 1.0);
+    loop {
+        let details: Vec<Detail> = pyramids.iter_mut().flat_map(Pyramid::descend).collect();
+        let Some(level) = power_of_level(&details) else { break };
+        share *= 0.5;
+        power += share * level;
+        last = level;
+    }
+    (power + share * last).max(1.0)
+}
+
+/// One trial's columns at a level, and what the tool does at each of its rows.
+struct Pyramid {
+    columns: [Vec<f64>; COLUMNS],
+    groups: Vec<usize>,
+    level: u32,
+}
+
+/// The coefficients of one instant, and what the tool does there.
+struct Detail {
+    values: [f64; COLUMNS],
+    group: usize,
+}
+
+/// Free or in contact, slow or fast.
+const GROUPS: usize = 4;
+
+impl Pyramid {
+    fn of(trial: &ContactTrial, fit: &Fit, number: usize, noise: &[f64], residual: &[f64]) -> Self {
+        let surface = fit.model.surface(&fit.values, number);
+        let is_inside = |row: usize| fit.model.bilateral || trial.position[row] > surface;
+        // Half of the rows of either kind are slow.
+        let usual = |inside: bool| {
+            let rows = (0..trial.len()).filter(|row| is_inside(*row) == inside);
+            median(rows.map(|row| trial.velocity[row].abs()).collect())
+        };
+        let usual = [usual(false), usual(true)];
+        let group = |row: usize| {
+            let inside = usize::from(is_inside(row));
+            2 * inside + usize::from(trial.velocity[row].abs() > usual[inside])
+        };
+        let over = |row: usize, value: f64| if noise[row].is_finite() { value / noise[row].sqrt() } else { 0.0 };
+        let rows = || 0..trial.len();
+        Self {
+            columns: [
+                rows().map(|row| over(row, residual[row])).collect(),
+                rows().map(|row| over(row, trial.force[row] - residual[row])).collect(),
+                trial.position.clone(),
+                trial.velocity.clone(),
+                trial.acceleration.clone(),
+            ],
+            groups: rows().map(group).collect(),
+            level: 0,
+        }
+    }
+
+    /// The details of the next level; what is left are the means.
+    fn descend(&mut self) -> Vec<Detail> {
+        let count = (self.columns[0].len() + 2).saturating_sub(FILTER.len()) / 2;
+        let reach = FILTER.len() as f64 - 1.0;
+        let detail = |column: &Vec<f64>, at: usize| -> f64 {
+            let taps = FILTER.iter().rev().enumerate().zip(&column[2 * at..]);
+            taps.map(|((tap, weight), value)| if tap % 2 == 0 { weight * value } else { -weight * value }).sum()
+        };
+        self.level += 1;
+        let wide = f64::from(2u32.pow(self.level));
+        let middle = |at: usize| ((wide * at as f64 + 0.5 * reach * (wide - 1.0)) as usize).min(self.groups.len() - 1);
+        let details = (0..count).map(|at| Detail {
+            values: std::array::from_fn(|column| detail(&self.columns[column], at)),
+            group: self.groups[middle(at)],
+        });
+        let details = details.collect();
+        for column in &mut self.columns {
+            let mean = |at: usize| FILTER.iter().zip(&column[2 * at..]).map(|(weight, value)| weight * value).sum();
+            *column = (0..count).map(mean).collect();
+        }
+        details
+    }
+}
+
+/// Power of the noise at a level; `None` where too few coefficients of what the tool does tell it, or where the law's force hides it.
+fn power_of_level(details: &[Detail]) -> Option<f64> {
+    let mut least = f64::INFINITY;
+    for group in 0..GROUPS {
+        let own: Vec<&Detail> = details.iter().filter(|detail| detail.group == group).collect();
+        if (own.len() as f64) < LEAST_PART * details.len() as f64 {
+            continue;
+        }
+        if own.len() < LEAST_COUNT {
+            return None;
+        }
+        let left = without_motion(&own);
+        let law = median(own.iter().map(|detail| detail.values[1].abs()).collect());
+        let left = median(left.into_iter().map(f64::abs).collect());
+        if law >= left {
+            return None;
+        }
+        least = least.min((left / NORMAL_MEDIAN).powi(2));
+    }
+    least.is_finite().then_some(least)
+}
+
+/// What is left in `details` beside the motion's part of it.
+fn without_motion(details: &[&Detail]) -> Vec<f64> {
+    let scale: [f64; 3] = std::array::from_fn(|at| {
+        let squares = details.iter().map(|detail| detail.values[2 + at].powi(2)).sum::<f64>();
+        (squares / details.len() as f64).sqrt().max(f64::MIN_POSITIVE)
+    });
+    let motion = |detail: &Detail| Vector3::from_fn(|at, _| detail.values[2 + at] / scale[at]);
+    let (mut matrix, mut right) = (Matrix3::identity() * 1e-9, Vector3::zeros());
+    for detail in details {
+        let motion = motion(detail);
+        matrix += motion * motion.transpose();
+        right += motion * detail.values[0];
+    }
+    let parts = matrix.cholesky().map_or_else(Vector3::zeros, |factors| factors.solve(&right));
+    details.iter().map(|detail| detail.values[0] - motion(detail).dot(&parts)).collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::{Data, Effort};
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::{FORCE_NOISE, TestContact};
+    use super::*;
+    use rand::SeedableRng as _;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    /// `contact` with noise beside the sensor's white one, of deviation `size` and a memory of one row.
+    fn with_memory(contact: &TestContact, size: f64, seed: u64) -> ContactTrial {
+        let mut recording = contact.recording(seed);
+        let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed + 1000);
+        let kept = f64::exp(-1.0);
+        let mut noise = 0.0;
+        for force in recording.force.as_mut().unwrap() {
+            let new: f64 = StandardNormal.sample(&mut random);
+            noise = kept * noise + size * (1.0 - kept * kept).sqrt() * new;
+            *force += noise;
+        }
+        TestContact::seen(&recording)
+    }
+
+    /// What is found behind the nominal law's residual of two trials, over what is stated.
+    fn power_of(trials: &[ContactTrial]) -> f64 {
+        let data = Data::new(trials);
+        let nominal = nominal_fit(&data, &TestContact::nominal());
+        let nominal = data.fit(&nominal.model, &nominal.values, Effort::FULL);
+        let residual: Vec<Vec<f64>> =
+            (0..trials.len()).map(|trial| data.residual(&nominal.model, &nominal.values, trial)).collect();
+        noise_power(trials, &nominal, &data.noise, &residual)
+    }
+
+    #[test]
+    fn noise_that_remembers_is_as_loud_as_it_is() {
+        for seed in [1, 3, 5] {
+            let size = 3.0 * FORCE_NOISE;
+            let trials = [seed, seed + 1].map(|seed| with_memory(&TestContact::PLAIN, size, seed));
+            // Ten of the sensor's own power. The least of four deviations, each known to an eighth where coefficients are fewest, is a tenth too
+            // small, and the noise is still a little quieter where the law hides it than below.
+            let power = power_of(&trials);
+            assert!((7.0..11.0).contains(&power), "{power}");
+        }
+    }
+
+    #[test]
+    fn white_noise_is_as_stated_and_a_misfit_of_the_law_is_none() {
+        let white = power_of(&[1, 2].map(|seed| TestContact::PLAIN.trial(seed)));
+        assert!((1.0..1.1).contains(&white), "{white}");
+        // Ten times the sensor's noise is left: by the bend of the spring, and by what relaxes.
+        for contact in
+            [TestContact { exponent: 1.8, ..TestContact::PLAIN }, TestContact { fading: 1.5, ..TestContact::PLAIN }]
+        {
+            let power = power_of(&[1, 2].map(|seed| contact.trial(seed)));
+            assert!((1.0..1.3).contains(&power), "{power}");
+        }
+    }
+}
