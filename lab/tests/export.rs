@@ -180,7 +180,12 @@ fn what_the_recordings_add_to_the_inertia_becomes_armature() {
         .expect("a number");
     assert!((armature - 0.1).abs() < 1e-12, "{armature}");
     assert!(text.contains("inertia 0.80000, given 0.70000") && output.stderr.is_empty(), "{text}");
-    // Less than the armature that is there cannot be taken away.
+    // Half a hundredth more than the armature that is there is left in the bodies, and said; more cannot be taken away.
+    fs::write(&nominal, RIG.replace("mass_kg = 0.8", "mass_kg = 0.804")).expect("a file");
+    let output = command.output().expect("palpate");
+    let told = String::from_utf8(output.stderr).expect("text");
+    assert!(output.status.success() && told.contains("take 0.0040000 kg away"), "{told}");
+    assert!(!String::from_utf8(output.stdout).expect("text").contains("armature"));
     fs::write(&nominal, RIG.replace("mass_kg = 0.8", "mass_kg = 0.9")).expect("a file");
     command.assert().code(1).stderr(contains("armature 0 kg").and(contains("take 0.10000 away")));
 }

@@ -52,6 +52,9 @@ pub fn refusal(effect: &FoundEffect) -> Option<&'static str> {
     })
 }
 
+/// Part of the inertia by which the bodies of a model may be too heavy without a word more than a note. Chosen: nobody's bodies are known better.
+const NEGLIGIBLE_INERTIA: f64 = 0.01;
+
 struct Writer<'a> {
     export: &'a Export<'a>,
     model: &'a MjcfModel<'a>,
@@ -91,11 +94,20 @@ impl Writer<'_> {
         }
     }
 
-    /// What the recordings add to the inertia that the rig said. The bodies may be those of several joints and stay as they are.
+    /// What the recordings add to the inertia that the rig said, or take from it. The bodies may be those of several joints and stay as they are.
     fn armature(&mut self, fitted: f64, given: f64) -> Result<(), InputError> {
         let before = self.model.joint_number("armature");
         let after = before + fitted - given;
         let unit = self.export.rig.coordinate.inertia_unit();
+        if after < 0.0 && -after < NEGLIGIBLE_INERTIA * fitted {
+            self.notes.push(format!(
+                "the recordings take {} {unit} away from the inertia at joint {}, more than its armature holds and less than a hundredth: \
+                 it is left as it is",
+                short(given - fitted),
+                self.model.name
+            ));
+            return Ok(());
+        }
         if after < 0.0 {
             let found =
                 format!("armature {} {unit}, where the recordings take {} away", short(before), short(given - fitted));
