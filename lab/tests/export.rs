@@ -162,6 +162,7 @@ fn a_contact_is_a_rig_file_within_the_stepper() {
 fn a_limit_of_the_effort_beside_a_load_is_the_actuators() {
     let limit = "[[effect]]\nname = \"effort_saturation\"\nlimit_n = 6.0\n[columns]\nload = \"inverse_dynamics\"\n";
     assert!(exported("mjcf", MJCF, limit, &[]).contains("forcerange=\"-3 3\""));
+    assert!(exported("urdf", URDF, limit, &[]).contains("effort=\"6\""));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::filter::{innovations, innovations_under};
+use super::filter::innovations_under;
 use super::innovations::Innovations;
 use super::input::Inputs;
 use super::law::DriveLaw;
@@ -63,7 +63,12 @@ impl Data<'_> {
     #[must_use]
     pub fn innovations(&self, model: &Model, values: &[f64], noise: &Noise) -> Vec<Innovations> {
         let law = model.law(values);
-        self.trials.par_iter().map(|trial| innovations(trial, &law, noise, false)).collect()
+        self.innovations_under(&Inputs::of_all(self.trials, &law), &law, noise)
+    }
+
+    fn innovations_under(&self, inputs: &[Inputs], law: &DriveLaw, noise: &Noise) -> Vec<Innovations> {
+        let each = self.trials.par_iter().zip(inputs);
+        each.map(|(trial, inputs)| innovations_under(trial, inputs, law, noise, false)).collect()
     }
 
     /// ln of the likelihood and the prior, with the common scale of both variances at its best, and ln of that scale.
@@ -177,14 +182,9 @@ impl<'a> Linearisation<'a> {
         let law = self.model.law(values);
         let own = (!Inputs::are_alike(&law, &self.law)).then(|| Inputs::of_all(self.data.trials, &law));
         let inputs = own.as_ref().unwrap_or(&self.inputs);
-        let each = self.data.trials.par_iter().zip(inputs);
-        match &self.gains {
-            None => each.map(|(trial, inputs)| innovations_under(trial, inputs, &law, self.noise, false)).collect(),
-            Some(gains) => each
-                .zip(gains)
-                .map(|((trial, inputs), gains)| one_body(trial, inputs, &law, self.noise, gains, false))
-                .collect(),
-        }
+        let Some(gains) = &self.gains else { return self.data.innovations_under(inputs, &law, self.noise) };
+        let each = self.data.trials.par_iter().zip(inputs).zip(gains);
+        each.map(|((trial, inputs), gains)| one_body(trial, inputs, &law, self.noise, gains, false)).collect()
     }
 
     /// Derivative of the standardised innovations by one step of value `at`, over `apart` steps to either side of it; zero where its range
@@ -341,10 +341,7 @@ pub fn search_noise(data: &Data<'_>, model: &Model, values: &[f64], noise: &mut 
     let inputs = Inputs::of_all(data.trials, &law);
     let cost = |ln: f64| {
         let noise = Noise { ln_disturbance: ln, ..base };
-        let each = data.trials.par_iter().zip(&inputs);
-        let passes: Vec<_> =
-            each.map(|(trial, inputs)| innovations_under(trial, inputs, &law, &noise, false)).collect();
-        -data.profiled(&passes, &noise).0
+        -data.profiled(&data.innovations_under(&inputs, &law, &noise), &noise).0
     };
     let (mut low, mut middle, mut high) =
         (base.ln_disturbance - FIRST_SPAN, base.ln_disturbance, base.ln_disturbance + FIRST_SPAN);
@@ -429,4 +426,22 @@ pub fn fit(data: &Data<'_>, model: &Model, start: &[f64], noise: Noise, effort: 
         }
     }
     Fit { model: model.clone(), values, noise, log_likelihood, ended }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::drive::term::Prior;
+
+    #[test]
+    fn a_prior_is_one_row_more() {
+        let range = Range::absolute(0.0, 2.0, 0.005).known(Prior { mean: 1.0, deviation: 0.05 });
+        let step = |normal: Normal| normal.step(&[1.1], &[range], 0.0)[0];
+        let of_rows = || Normal::of(&[vec![2.0]], &[1.0]);
+        assert!((step(of_rows()) - (1.1 - 0.5 * 0.005)).abs() < 1e-12);
+        // A second row: a tenth of a deviation a step, two deviations off.
+        let both = Normal::of(&[vec![2.0, 0.1]], &[1.0, 2.0]);
+        assert!((step(of_rows().with_priors(&[1.1], &[range])) - step(both)).abs() < 1e-12);
+        assert!((range.ln_prior(1.1) + 2.0).abs() < 1e-12);
+    }
 }

@@ -332,11 +332,13 @@ mod tests {
     use super::*;
     use crate::diagnose::drive::testing::{TestDrive, TestLink};
 
+    fn nominal(inertia: f64, viscous: f64) -> NominalDrive {
+        NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() }
+    }
+
     fn identified(drive: &TestDrive, inertia: f64, viscous: f64, seed: u64) -> Outcome {
-        let rig =
-            NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() };
         let trials = vec![drive.trial(6.0, seed), drive.trial(6.0, seed + 1)];
-        identify(trials, &rig, 1, &|_| {}).expect("a drive that moves")
+        identify(trials, &nominal(inertia, viscous), 1, &|_| {}).expect("a drive that moves")
     }
 
     #[test]
@@ -439,16 +441,9 @@ mod tests {
 
     #[test]
     fn a_load_that_is_off_by_some_hundredths_is_a_value_and_no_physics() {
-        let rig = NominalDrive {
-            inertia: 0.8,
-            viscous: 4.0,
-            is_rotary: false,
-            encoder: None,
-            resolution: 1e-5,
-            effects: vec![],
-        };
         let identified = |drive: &TestDrive, factor: f64| {
-            identify(vec![loaded(drive, factor, 1), loaded(drive, factor, 2)], &rig, 1, &|_| {}).expect("it moves")
+            identify(vec![loaded(drive, factor, 1), loaded(drive, factor, 2)], &nominal(0.8, 4.0), 1, &|_| {})
+                .expect("it moves")
         };
         let scale = |outcome: &Outcome| outcome.chosen.values[outcome.chosen.model.load_scale().expect("a load")];
         let off = identified(&TestDrive::PLAIN, 1.06);
@@ -462,17 +457,9 @@ mod tests {
 
     #[test]
     fn a_load_that_never_acts_leaves_its_factor_where_it_is_believed() {
-        let rig = NominalDrive {
-            inertia: 0.8,
-            viscous: 4.0,
-            is_rotary: false,
-            encoder: None,
-            resolution: 1e-5,
-            effects: vec![],
-        };
         let still = |trial: DriveTrial| DriveTrial { load: Some(vec![0.0; trial.effort.len()]), ..trial };
         let trials = [1, 2].map(|seed| still(TestDrive::PLAIN.trial(6.0, seed)));
-        let outcome = identify(trials.to_vec(), &rig, 1, &|_| {}).expect("it moves");
+        let outcome = identify(trials.to_vec(), &nominal(0.8, 4.0), 1, &|_| {}).expect("it moves");
         let at = outcome.chosen.model.load_scale().expect("a load");
         assert_eq!((outcome.verdict, outcome.chosen.values[at]), (Verdict::NoMismatch, 1.0));
         // Nothing was seen of it: all that is believed of it stays possible.
@@ -530,14 +517,6 @@ mod tests {
             None,
             1,
         );
-        let rig = NominalDrive {
-            inertia: 0.8,
-            viscous: 4.0,
-            is_rotary: false,
-            encoder: None,
-            resolution: 0.0,
-            effects: vec![],
-        };
-        assert!(identify(vec![still], &rig, 1, &|_| {}).is_none());
+        assert!(identify(vec![still], &nominal(0.8, 4.0), 1, &|_| {}).is_none());
     }
 }

@@ -290,8 +290,8 @@ pub fn two_bodies(
             state = [position, rate, position, rate];
             slips = Slips::default();
             let effort = inputs.effort[(row + 1).min(rows - 1)];
-            uncertainty = Uncertainty { covariance: unknown_pair(trial, &link, encoder, effort), ..uncertainty };
-            uncertainty.steady_rows = 0;
+            uncertainty =
+                Uncertainty { covariance: unknown_pair(trial, &link, encoder, effort), ..Uncertainty::default() };
             if smooth {
                 history.push(PairRow { gain: [0.0; STATES], coupled: true, pair: 0 });
             }
