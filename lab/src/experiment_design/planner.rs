@@ -153,7 +153,10 @@ impl Situation<'_> {
             .map(|contact| contact.surface)
             .filter(|surface| low < *surface || rig.contact.is_some_and(|c| c.bilateral));
         let first = self.trials.first().and_then(|trial| trial.position.first().copied());
-        let start = first.unwrap_or_else(|| surface.map_or(0.5 * (low + high), |surface| 0.5 * (low + surface)));
+        // A clamped tool starts where it rests: elsewhere the contact pulls before the loop has an effort, and no motion is smooth.
+        let rest = rig.contact.filter(|contact| contact.bilateral).map(|contact| contact.surface);
+        let start =
+            rest.or(first).unwrap_or_else(|| surface.map_or(0.5 * (low + high), |surface| 0.5 * (low + surface)));
         let free = rig.contact.is_none_or(|contact| !contact.bilateral && contact.surface > low);
         let by_effort = kept.effort.map(|effort| {
             let inertia = rig.drive.map_or(self.closed_loop.drive.inertia, |drive| drive.inertia);

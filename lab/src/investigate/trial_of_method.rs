@@ -145,7 +145,8 @@ pub fn run(args: &InvestigateChallengeArgs) -> Result<()> {
 }
 
 fn investigate(args: &InvestigateChallengeArgs, case: &ListedCase) -> Result<Row> {
-    let request = CaseRequest { excitation: Some(Excitation::Poor), ..case.request.clone() };
+    // A rig that follows trajectories has a drive; its file says so where the effort is recorded.
+    let request = CaseRequest { excitation: Some(Excitation::Poor), effort: Some(true), ..case.request.clone() };
     let concealed = || ConcealedRig::draw(args.seed, case.index, &request);
     let mut rig_of_case = concealed()?;
     let truth: Vec<String> = match rig_of_case.case.truth.kind {

@@ -110,3 +110,36 @@ fn without_a_recording_the_first_trial_explores() {
     let plan = plan.unwrap();
     assert!(plan.is_worth_running() && plan.new_states > 0.3, "{plan:?}");
 }
+
+#[test]
+fn a_clamped_tool_starts_where_its_contact_rests() {
+    // The contact is twice as stiff as the position loop, and was recorded from 2 mm off its rest: begun there, every motion would
+    // leap by more than the limits allow, and none was found.
+    let mut rig = bench("");
+    let contact = rig.contact.as_mut().unwrap();
+    contact.bilateral = true;
+    contact.surface = 0.001;
+    contact.stiffness = 1600.0;
+    let time: Vec<f64> = (0..8000).map(|row| row as f64 * 1e-3).collect();
+    let position: Vec<f64> = time.iter().map(|t| 0.001 - 0.002 * (2.0 * t).cos()).collect();
+    let force = position.iter().map(|x| 1600.0 * (x - 0.001)).collect();
+    let trials = [Recording { time, position, force: Some(force), ..Recording::default() }];
+    let closed_loop = LoopModel::new(&rig, &trials);
+    let explanations = [Explanation { physics: Vec::new(), rig: rig.clone() }];
+    let limits = Limits { position: [-0.0015, 0.0035], force: Some(4.0), effort: Some(4.0), ..LIMITS };
+    let noise = Noise::of(&rig, &trials, [0.0; 2]);
+    let situation = Situation {
+        explanations: &explanations,
+        questions: &[],
+        trials: &trials,
+        limits: &limits,
+        noise,
+        closed_loop,
+        ease: 1.0,
+    };
+    let plan = plan(&situation).unwrap();
+    assert!(plan.is_worth_running(), "{plan:?}");
+    let predicted = predict(&rig, &closed_loop, &plan.reference).unwrap();
+    let deepest = predicted.force.unwrap().iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    assert!(deepest <= limits.with_margin().force.unwrap(), "{deepest}");
+}
