@@ -25,6 +25,7 @@ use crate::reproduce::{self, ReproduceArgs};
 use crate::schema::{self, SchemaArgs};
 use crate::simulate::{self, SimulateArgs};
 use crate::terminal;
+use crate::threshold_sweep::{self, SweepThresholdsArgs};
 
 /// Stiffness and damping of what a tool touches: identified from recordings, on the host or on the drive's processor.
 #[derive(Debug, Parser)]
@@ -60,6 +61,8 @@ enum Command {
     Profile(ProfileArgs),
     /// Put the diagnosis to recordings whose missing physics is concealed from it
     Challenge(ChallengeArgs),
+    /// Vary each threshold of the diagnosis by 30 % and count the answers that change
+    SweepThresholds(SweepThresholdsArgs),
     /// Show what a drive feels, record it, and send it commands
     Listen(ListenArgs),
     /// Make the calibration block that a drive reads from its flash
@@ -106,6 +109,7 @@ pub fn run_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Profile(args) => profile::run(&args),
         Command::Challenge(args) => challenge::run(&args),
+        Command::SweepThresholds(args) => threshold_sweep::run(&args),
         Command::Listen(args) => listen::run(&args),
         Command::Calibrate(args) => calibrate::run(&args),
         Command::Effects(args) => catalogue::run(&args),

@@ -113,6 +113,7 @@ fn explained(rig: &Path, trials: &[PathBuf], out: &Path) -> Result<PathBuf> {
     std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
     let page = out.join("diagnosis.html");
     diagnose::run(&DiagnoseArgs {
+        vary: None,
         rig: rig.to_path_buf(),
         trials: trials.to_vec(),
         simulation: Vec::new(),

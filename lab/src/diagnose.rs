@@ -22,6 +22,7 @@ pub mod phase;
 pub mod report;
 pub mod signals;
 pub mod term;
+pub mod threshold;
 pub mod thresholds;
 pub mod verdict;
 
@@ -41,6 +42,12 @@ pub use report::diagnosis::Diagnosis;
 use report::diagnosis::PlotData;
 use report::merge::{self, Report};
 use report::{contact_report, drive_report};
+
+/// Every threshold of the diagnosis that is a number on a scale.
+pub fn thresholds() -> impl Iterator<Item = threshold::Threshold> {
+    let channels = contact::criteria::ALL.iter().chain(drive::criteria::ALL);
+    channels.copied().chain(thresholds::all())
+}
 
 /// What `diagnose` found.
 pub struct Found {

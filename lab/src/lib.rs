@@ -37,4 +37,5 @@ pub mod schema;
 pub mod sensors;
 pub mod simulate;
 pub mod terminal;
+pub mod threshold_sweep;
 pub mod tools;

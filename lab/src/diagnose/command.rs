@@ -9,12 +9,13 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use sha2::{Digest as _, Sha256};
 
-use super::{Found, diagnose};
+use super::{Found, diagnose, thresholds};
 use crate::diagnose::experiment::Experiment;
 use crate::diagnose::report::diagnosis::{Diagnosis, Run};
 use crate::diagnose::report::html;
 use crate::diagnose::report::model_file::model_file;
 use crate::diagnose::report::recorded_motion::runnable;
+use crate::diagnose::threshold::vary;
 use crate::error::{InputError, UsageError};
 use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
@@ -52,6 +53,9 @@ pub struct DiagnoseArgs {
     /// Seed of the noise that is drawn to estimate what the sensors alone would show in the drive: the same seed, the same answer
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Multiply a threshold of the diagnosis by a factor, to see what hangs on it; `palpate sweep-thresholds --list` names them
+    #[arg(long, value_name = "NAME=FACTOR", hide_short_help = true)]
+    pub vary: Option<String>,
 }
 
 /// Runs `palpate diagnose`.
@@ -59,6 +63,9 @@ pub struct DiagnoseArgs {
 /// # Errors
 /// A rig file or recording at fault, a wrong count of simulations, or an output that cannot be written.
 pub fn run(args: &DiagnoseArgs) -> Result<()> {
+    if let Some(setting) = &args.vary {
+        vary(setting, thresholds())?;
+    }
     let rig = Rig::read(&args.rig)?;
     let origin = args.rig.display().to_string();
     if !args.simulation.is_empty() && args.simulation.len() != args.trials.len() {

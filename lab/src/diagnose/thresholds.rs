@@ -1,47 +1,61 @@
-//! Every tuned number of the diagnosis that has a name: value, unit, meaning, and where it comes from.
+//! Every tuned number that the input checks and the preparation of signals decide by: value, unit, meaning, and where it comes from.
 //!
-//! "derived" follows from the reason that stands beside it, "cited" is taken from a standard, "chosen" was set by trial on
-//! simulated recordings. "1" is a ratio or a share, "count" a number of things.
+//! "derived" follows from the reason that stands beside it, "cited" is taken from the literature or a standard, "chosen" was set by trial on
+//! simulated recordings. "1" is a ratio or a share, "count" a number of things. Those of the two channels stand in `contact/criteria.rs` and
+//! `drive/criteria.rs`.
+
+use super::threshold::Threshold;
+
+/// Those of them that are numbers on a scale.
+pub fn all() -> impl Iterator<Item = Threshold> {
+    let files: &[&[Threshold]] = &[
+        check_checked_trial::ALL,
+        check_clock::ALL,
+        check_contact::ALL,
+        check_drive::ALL,
+        check_excitation::ALL,
+        check_position_steps::ALL,
+        check_stuck_channel::ALL,
+        check_units::ALL,
+        derivative_filter::ALL,
+        mains_tone::ALL,
+        pauses::ALL,
+        uniform_trial::ALL,
+    ];
+    files.iter().copied().flatten().copied()
+}
 
 /// Of `check/checked_trial`.
 pub mod check_checked_trial {
-    /// Share of the usual speed that noise may leave in it.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_SPEED_NOISE_FRACTION: f64 = 0.03;
+    use crate::diagnose::threshold::thresholds;
 
-    /// Narrowest blur, in periods.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_WIDTH_PERIODS: f64 = 1.5;
-
-    /// Widest blur, as a share of the trial.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_WIDTH_FRACTION: f64 = 0.004;
+    thresholds! { "check_checked_trial";
+        /// Share of the usual speed that noise may leave in it.
+        MAX_SPEED_NOISE_FRACTION = 0.03, "1", chosen;
+        /// Narrowest blur, in periods.
+        MIN_WIDTH_PERIODS = 1.5, "1", chosen;
+        /// Widest blur, as a share of the trial.
+        MAX_WIDTH_FRACTION = 0.004, "1", chosen;
+    }
 }
 
 /// Of `check/clock`.
 pub mod check_clock {
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "check_clock";
+        /// Ratio of two periods that makes two rates.
+        RATE_CHANGE_RATIO = 1.5, "1", chosen;
+        /// Deviation of nine in ten intervals, over the period, from which a clock is uneven.
+        MAX_JITTER = 0.25, "1", chosen;
+        /// Ratio of periods of two trials that makes a difference.
+        PERIOD_RATIO = 1.05, "1", chosen;
+    }
+
     /// Stretches that a trial is cut into to see its rate change.
     ///
     /// Unit: count; chosen.
     pub const RATE_SEGMENTS: usize = 20;
-
-    /// Ratio of two periods that makes two rates.
-    ///
-    /// Unit: 1; chosen.
-    pub const RATE_CHANGE_RATIO: f64 = 1.5;
-
-    /// Deviation of nine in ten intervals, over the period, from which a clock is uneven.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_JITTER: f64 = 0.25;
-
-    /// Ratio of periods of two trials that makes a difference.
-    ///
-    /// Unit: 1; chosen.
-    pub const PERIOD_RATIO: f64 = 1.05;
 
     /// Rows of all trials below which little can be concluded, ...
     ///
@@ -56,33 +70,31 @@ pub mod check_clock {
 
 /// Of `check/contact`.
 pub mod check_contact {
-    /// Correlation of force and depth that speaks for itself.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_CORRELATION: f64 = 0.6;
+    use crate::diagnose::threshold::thresholds;
 
-    /// Deviations of the smoothed noise from which a force is there.
-    ///
-    /// Unit: 1; chosen.
-    pub const FORCE_RISE_SIGMAS: f64 = 10.0;
+    thresholds! { "check_contact";
+        /// Correlation of force and depth that speaks for itself.
+        MIN_CORRELATION = 0.6, "1", chosen;
+        /// Deviations of the smoothed noise from which a force is there.
+        FORCE_RISE_SIGMAS = 10.0, "1", chosen;
+        /// Rows, as recorded, that a state has to last to be known.
+        MIN_STATE_ROWS = 5.0, "rows", chosen;
+    }
 
     /// Slices of the depth in which a rise is looked for.
     ///
     /// Unit: count; chosen.
     pub const DEPTH_SLICES: usize = 50;
-
-    /// Rows, as recorded, that a state has to last to be known.
-    ///
-    /// Unit: rows; chosen.
-    pub const MIN_STATE_ROWS: f64 = 5.0;
 }
 
 /// Of `check/drive`.
 pub mod check_drive {
-    /// Correlation of what is left of effort and acceleration that speaks for itself.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_CORRELATION: f64 = 0.65;
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "check_drive";
+        /// Correlation of what is left of effort and acceleration that speaks for itself.
+        MIN_CORRELATION = 0.65, "1", chosen;
+    }
 
     /// Rows that are put together, in turn.
     ///
@@ -97,25 +109,22 @@ pub mod check_drive {
 
 /// Of `check/excitation`.
 pub mod check_excitation {
-    /// Ratio of speeds below which they are one speed.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_SINGLE_SPEED_RATIO: f64 = 1.5;
+    use crate::diagnose::threshold::thresholds;
 
-    /// Share of the usual speed above which the tool moves.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_MOVING_SPEED_FRACTION: f64 = 0.1;
-
-    /// Range of depths, over the depth, below which it is one depth.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_SINGLE_DEPTH_FRACTION: f64 = 0.2;
-
-    /// ... and rows, as recorded, on that way from which depth shows after all.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_DEPTH_ROWS: f64 = 20.0;
+    thresholds! { "check_excitation";
+        /// Ratio of speeds below which they are one speed.
+        MAX_SINGLE_SPEED_RATIO = 1.5, "1", chosen;
+        /// Share of the usual speed above which the tool moves.
+        MIN_MOVING_SPEED_FRACTION = 0.1, "1", chosen;
+        /// Range of depths, over the depth, below which it is one depth.
+        MAX_SINGLE_DEPTH_FRACTION = 0.2, "1", chosen;
+        /// ... and rows, as recorded, on that way from which depth shows after all.
+        MIN_DEPTH_ROWS = 20.0, "1", chosen;
+        /// ... and how far they may differ, over the range of depths.
+        MAX_HOLD_DEPTH_FRACTION = 0.03, "1", chosen;
+        /// Share of moving rows that have to go back for it to count.
+        MIN_RETURN_FRACTION = 0.02, "1", chosen;
+    }
 
     /// Pieces of a contact among which a hold is looked for, ...
     ///
@@ -127,16 +136,6 @@ pub mod check_excitation {
     /// Unit: count; chosen.
     pub const MIN_HOLD_SEGMENTS: usize = 3;
 
-    /// ... and how far they may differ, over the range of depths.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_HOLD_DEPTH_FRACTION: f64 = 0.03;
-
-    /// Share of moving rows that have to go back for it to count.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_RETURN_FRACTION: f64 = 0.02;
-
     /// Fewest rows in contact that say anything of the motion.
     ///
     /// Unit: rows; chosen.
@@ -145,44 +144,39 @@ pub mod check_excitation {
 
 /// Of `check/position_steps`.
 pub mod check_position_steps {
-    /// A leap is so many times what a row moves at most, ...
-    ///
-    /// Unit: 1; chosen.
-    pub const JUMP_RATE_RATIO: f64 = 10.0;
+    use crate::diagnose::threshold::thresholds;
 
-    /// ... such a share of the whole range, ...
-    ///
-    /// Unit: 1; chosen.
-    pub const JUMP_RANGE_FRACTION: f64 = 0.1;
-
-    /// (from which it spoils the trial), ...
-    ///
-    /// Unit: 1; chosen.
-    pub const GRAVE_JUMP_FRACTION: f64 = 0.5;
-
-    /// ... and so many steps of the sensor.
-    ///
-    /// Unit: 1; chosen.
-    pub const JUMP_RESOLUTION_STEPS: f64 = 5.0;
-
-    /// Steps over the whole motion below which a sensor is coarse, ...
-    ///
-    /// Unit: 1; chosen.
-    pub const COARSE_STEPS: f64 = 20.0;
-
-    /// ... and below which it shows next to nothing.
-    ///
-    /// Unit: 1; chosen.
-    pub const BLIND_STEPS: f64 = 5.0;
-
-    /// Deviations over which pure noise ranges: a hundredth left out at either end leaves 4.7.
-    ///
-    /// Unit: 1; derived.
-    pub const NOISE_RANGE_SIGMAS: f64 = 5.5;
+    thresholds! { "check_position_steps";
+        /// A leap is so many times what a row moves at most, ...
+        JUMP_RATE_RATIO = 10.0, "1", chosen;
+        /// ... such a share of the whole range, ...
+        JUMP_RANGE_FRACTION = 0.1, "1", chosen;
+        /// (from which it spoils the trial), ...
+        GRAVE_JUMP_FRACTION = 0.5, "1", chosen;
+        /// ... and so many steps of the sensor.
+        JUMP_RESOLUTION_STEPS = 5.0, "1", chosen;
+        /// Steps over the whole motion below which a sensor is coarse, ...
+        COARSE_STEPS = 20.0, "1", chosen;
+        /// ... and below which it shows next to nothing.
+        BLIND_STEPS = 5.0, "1", chosen;
+        /// Deviations over which pure noise ranges: a hundredth left out at either end leaves 4.7.
+        NOISE_RANGE_SIGMAS = 5.5, "1", derived;
+    }
 }
 
 /// Of `check/stuck_channel`.
 pub mod check_stuck_channel {
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "check_stuck_channel";
+        /// White noise over the sensor's step from which neighbouring rows differ.
+        NOISE_OVER_STEP = 0.7, "1", chosen;
+        /// Share of its range that a channel should have moved by, or that another moves by, while it stands.
+        MIN_MOVED_FRACTION = 0.05, "1", chosen;
+        /// The same away from the channel's own ends, where a standing reading is less suspicious.
+        MOVED_FRACTION_INSIDE_RANGE = 0.25, "1", chosen;
+    }
+
     /// Equal rows that are worth a look.
     ///
     /// Unit: rows; chosen.
@@ -192,29 +186,16 @@ pub mod check_stuck_channel {
     ///
     /// Unit: rows; derived.
     pub const FROZEN_ROWS: usize = 64;
-
-    /// White noise over the sensor's step from which neighbouring rows differ.
-    ///
-    /// Unit: 1; chosen.
-    pub const NOISE_OVER_STEP: f64 = 0.7;
-
-    /// Share of its range that a channel should have moved by, or that another moves by, while it stands.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_MOVED_FRACTION: f64 = 0.05;
-
-    /// The same away from the channel's own ends, where a standing reading is less suspicious.
-    ///
-    /// Unit: 1; chosen.
-    pub const MOVED_FRACTION_INSIDE_RANGE: f64 = 0.25;
 }
 
 /// Of `check/units`.
 pub mod check_units {
-    /// By how much a nominal stiffness may be off before a factor is no longer that factor.
-    ///
-    /// Unit: 1; chosen.
-    pub const FACTOR_TOLERANCE: f64 = 2.5;
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "check_units";
+        /// By how much a nominal stiffness may be off before a factor is no longer that factor.
+        FACTOR_TOLERANCE = 2.5, "1", chosen;
+    }
 }
 
 /// Of `signals/dequantize`.
@@ -227,46 +208,43 @@ pub mod dequantize {
 
 /// Of `signals/derivative_filter`.
 pub mod derivative_filter {
-    /// Widths after which the Gaussian ends: 3e-4 of its peak.
-    ///
-    /// Unit: 1; derived.
-    pub const HALF_WIDTH_SIGMAS: f64 = 4.0;
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "derivative_filter";
+        /// Widths after which the Gaussian ends: 3e-4 of its peak.
+        HALF_WIDTH_SIGMAS = 4.0, "1", derived;
+    }
 }
 
 /// Of `signals/mains_tone`.
 pub mod mains_tone {
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "mains_tone";
+        /// Share by which mains may be off their frequency.
+        MAINS_FREQUENCY_TOLERANCE = 0.004, "1", chosen;
+        /// Share within which the rest of the spectrum is what the tone is held against.
+        BACKGROUND_FRACTION = 0.06, "1", chosen;
+        /// Power of a tone over the mean around it. Noise comes to it once in e^40 frequencies.
+        TONE_POWER_RATIO = 40.0, "1", derived;
+        /// Fewest turns of the mains that tell a tone.
+        MIN_CYCLES = 40.0, "1", chosen;
+    }
+
     /// Frequencies of mains, Hz.
     ///
     /// Unit: Hz; cited.
     pub const MAINS_HZ: [f64; 2] = [50.0, 60.0];
-
-    /// Share by which mains may be off their frequency.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAINS_FREQUENCY_TOLERANCE: f64 = 0.004;
-
-    /// Share within which the rest of the spectrum is what the tone is held against.
-    ///
-    /// Unit: 1; chosen.
-    pub const BACKGROUND_FRACTION: f64 = 0.06;
-
-    /// Power of a tone over the mean around it. Noise comes to it once in e^40 frequencies.
-    ///
-    /// Unit: 1; derived.
-    pub const TONE_POWER_RATIO: f64 = 40.0;
-
-    /// Fewest turns of the mains that tell a tone.
-    ///
-    /// Unit: 1; chosen.
-    pub const MIN_CYCLES: f64 = 40.0;
 }
 
 /// Of `signals/pauses`.
 pub mod pauses {
-    /// Time in gaps, over the time that rows hold, from which a trial is divided: the even clock has eleven times the rows at the most.
-    ///
-    /// Unit: 1; chosen.
-    pub const MAX_GAP_RATIO: f64 = 10.0;
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "pauses";
+        /// Time in gaps, over the time that rows hold, from which a trial is divided: the even clock has eleven times the rows at the most.
+        MAX_GAP_RATIO = 10.0, "1", chosen;
+    }
 }
 
 /// Of `signals/prepare`.
@@ -279,8 +257,10 @@ pub mod prepare {
 
 /// Of `signals/uniform_trial`.
 pub mod uniform_trial {
-    /// Periods without a row that make a gap.
-    ///
-    /// Unit: 1; chosen.
-    pub const GAP_PERIODS: f64 = 3.5;
+    use crate::diagnose::threshold::thresholds;
+
+    thresholds! { "uniform_trial";
+        /// Periods without a row that make a gap.
+        GAP_PERIODS = 3.5, "1", chosen;
+    }
 }

@@ -88,9 +88,6 @@ impl LearnedCurve {
     }
 }
 
-/// Share of what is left on unseen rows from which a curve is worth having: that of a named effect.
-const LEAST_SHARE: f64 = LEAST_HELD_OUT_SHARE;
-
 /// Part of the depth before the surface over which the curve reaches: what pulls or pushes before the touch.
 const BEFORE_SURFACE: f64 = 0.25;
 
@@ -140,7 +137,7 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     let above = (left.energy - expected).max((NOTABLE_POWER - 1.0) * expected);
     let held_out_share = (left.energy - unseen.energy) / above;
     // By weight, and as it is told: in newtons.
-    if held_out_share < LEAST_SHARE || rms(data, &unseen.residual) >= rms(data, &left.residual) {
+    if held_out_share < LEAST_HELD_OUT_SHARE || rms(data, &unseen.residual) >= rms(data, &left.residual) {
         return None;
     }
     let energy = energy(&data.weighted_residual(&model, &values));

@@ -264,7 +264,7 @@ fn is_notable(search: &Search<'_>, fit: &Fit, rest: &Rest) -> bool {
     let data = &search.data;
     let left = fit.energy - data.expected();
     rest.over_sensors > NOTABLE_POWER
-        && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.max(LEAST_PART_OF_FORCE)
+        && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.value().max(LEAST_PART_OF_FORCE.value())
         && rms(data, &columns(data, fit)) > data.expected_noise()
 }
 

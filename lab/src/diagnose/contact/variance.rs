@@ -30,7 +30,7 @@ pub fn law_variance(rows: &[(f64, f64)]) -> f64 {
 pub fn noise_scale(rows: &[(f64, f64)]) -> f64 {
     let squares: f64 = rows.iter().map(|(variance, square)| square / variance).sum();
     let scale = squares / rows.len().max(1) as f64;
-    if scale < NOTABLE_POWER.recip() { scale.max(f64::MIN_POSITIVE) } else { 1.0 }
+    if scale < 1.0 / NOTABLE_POWER { scale.max(f64::MIN_POSITIVE) } else { 1.0 }
 }
 
 /// Variance of each row of `trial` by the sensors, under `model` with `values`; infinite where the row is no measurement of the law.

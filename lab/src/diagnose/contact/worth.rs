@@ -1,8 +1,8 @@
 //! What one law of the contact is worth beside another: likelihood, share and price of its values.
 
 use super::criteria::{
-    FAR_FROM_NOISE, FAR_SHARES, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE, LEAST_SHARE, LEAST_TOLD_SHARE,
-    LEAST_VUONG,
+    FAR_FROM_NOISE, FAR_LEAST_PART_OF_ALL, FAR_LEAST_SHARE, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE,
+    LEAST_SHARE, LEAST_TOLD_SHARE, LEAST_VUONG,
 };
 use super::fit::{Fit, Rest};
 use super::selection::Search;
@@ -80,7 +80,11 @@ impl Search<'_> {
         let values = free(more).saturating_sub(free(less)).max(1);
         let worth = self.worth(more, less);
         // Far from the sensors' noise any bend of a law takes a little of what another one leaves.
-        let [share, part] = if worth.left > FAR_FROM_NOISE { FAR_SHARES } else { [LEAST_SHARE, LEAST_PART_OF_ALL] };
+        let [share, part] = if worth.left > FAR_FROM_NOISE {
+            [FAR_LEAST_SHARE, FAR_LEAST_PART_OF_ALL]
+        } else {
+            [LEAST_SHARE, LEAST_PART_OF_ALL]
+        };
         worth.gain > LEAST_GAIN + worth.price * values as f64
             && worth.share > share
             && worth.part_of_all > part

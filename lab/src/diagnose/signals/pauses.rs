@@ -64,7 +64,7 @@ fn pauses_of(time: &[f64]) -> Vec<usize> {
     let mut sorted = steps.clone();
     sorted.sort_unstable_by(f64::total_cmp);
     let Some(period) = sorted.get(sorted.len() / 2) else { return Vec::new() };
-    let is_gap = |step: f64| step > GAP_PERIODS * period;
+    let is_gap = |step: f64| step > GAP_PERIODS * *period;
     let recorded: f64 = steps.iter().filter(|step| !is_gap(**step)).sum();
     let mut gaps: Vec<usize> = (0..steps.len()).filter(|at| is_gap(steps[*at])).collect();
     gaps.sort_by(|a, b| steps[*b].total_cmp(&steps[*a]));
