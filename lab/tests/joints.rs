@@ -20,7 +20,9 @@ fn rig(joint: &str) -> String {
 /// Both joints are driven alike. The shoulder's known load is all that there is; the elbow's drive rubs with 1.5 N m besides, which is
 /// written down as effort: the motion is prescribed, and the effort is what it takes.
 fn trial(seed: u64) -> String {
-    let mut text = "t_s,q_shoulder,tau_shoulder,load_shoulder,q_elbow,tau_elbow,load_elbow,rest_elbow\n".to_owned();
+    let mut text =
+        "t_s,q_shoulder,tau_shoulder,load_shoulder,q_elbow,tau_elbow,load_elbow,rest_elbow,tau_carried,load_carried\n"
+            .to_owned();
     let (mut state, phase) = (seed, seed as f64);
     let mut noise = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -44,7 +46,16 @@ fn trial(seed: u64) -> String {
         let [one, two] = [q + 1e-5 * noise(), q + 1e-5 * noise()];
         // A load is that of its row.
         let given = load_at(t);
-        text += &format!("{t},{one},{},{given},{two},{},{given},{}\n", drive + load, drive + load + rubs, drive + rubs);
+        // What another axis asks of the shoulder; it follows the clock, so that no law of this joint can stand for it.
+        let carried = |t: f64| 2.0 * (3.0 * t + phase).sin();
+        text += &format!(
+            "{t},{one},{},{given},{two},{},{given},{},{},{}\n",
+            drive + load,
+            drive + load + rubs,
+            drive + rubs,
+            drive + carried(m),
+            carried(t)
+        );
     }
     text
 }
@@ -124,6 +135,23 @@ fn a_load_beside_the_effort_is_the_load_taken_from_it_beforehand() {
     // The load's factor is one value more, which takes a part of the other: a tenth of the level's half-width, which is
     // 1.9e-3 N m.
     assert!((level(&beside) - level(&beforehand)).abs() < 1.9e-4, "{beside} and {beforehand}");
+}
+
+#[test]
+fn a_load_that_is_wrong_by_more_than_a_model_is_ends_at_its_end_and_says_so() {
+    let arm = Arm::new();
+    let finding = |rig: &str| {
+        arm.command(&["diagnose", "--rig", rig, "1.csv", "2.csv", "--json", "answer.json"]).assert().success();
+        let answer = json(&arm.path("answer.json"));
+        let findings = answer["findings"].as_array().expect("findings").clone();
+        findings.into_iter().find(|finding| finding["code"] == "load_scale_at_end")
+    };
+    assert_eq!(finding("shoulder.toml"), None);
+    // What is carried weighs 1.6 times what the rig file says: 15 % more is tried.
+    let carries = rig("shoulder").replace("tau_shoulder", "tau_carried").replace("load_shoulder", "load_carried");
+    fs::write(arm.path("carries.toml"), carries.replace("[drive]", "[drive]\nload_scale = 0.625")).expect("a file");
+    let found = finding("carries.toml").expect("the finding");
+    assert!(found["text"].as_str().expect("a text").contains("times 1.15"), "{found}");
 }
 
 #[test]

@@ -84,7 +84,7 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig, touched: Option<&Touched>) -> 
             .filter(|spec| spec.place == Place::Drive)
             .map(|spec| spec.name)
             .collect(),
-        findings: outside_forces(outcome),
+        findings: outside_forces(outcome).into_iter().chain(load_at_its_end(outcome)).collect(),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
     let first_effect = diagnosis.physics.first().map(|physics| physics.name.as_str());
@@ -120,6 +120,21 @@ fn outside_forces(outcome: &Outcome) -> Vec<Finding> {
         }
     };
     outcome.outside_forces.iter().map(sentence).collect()
+}
+
+/// A load whose factor ends where the search does: the recordings would have it further off than a rigid-body model is.
+fn load_at_its_end(outcome: &Outcome) -> Option<Finding> {
+    let at = outcome.chosen.model.load_scale()?;
+    let factor = outcome.chosen.values[at];
+    outcome.chosen.model.ranges()[at].is_at_end(factor).then(|| Finding {
+        code: "load_scale_at_end",
+        grave: false,
+        place: "load".to_owned(),
+        text: format!(
+            "The given load fits best times {factor:.2}, the furthest that is tried: either it is wrong by more, or this motion hardly \
+             tells it from the inertia. Check its masses, or record slow motion, in which a load acts and an inertia does not."
+        ),
+    })
 }
 
 fn residuals(outcome: &Outcome) -> Residuals {
