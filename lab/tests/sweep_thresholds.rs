@@ -15,8 +15,8 @@ fn the_list_has_every_threshold_with_value_unit_origin_and_meaning() {
 }
 
 #[test]
-fn a_threshold_that_nothing_can_pass_changes_the_answer_and_a_second_run_asks_nothing() {
-    // The first case of this seed's sample conceals an effect far above the noise. With ten times the share that there is, no name is given.
+fn a_sweep_of_one_threshold_asks_thrice_and_a_second_run_asks_nothing() {
+    // The one case of this seed has no effort, so that only the contact is identified.
     let folder = tempfile::tempdir().unwrap();
     let sweep = || {
         let mut command = palpate();
