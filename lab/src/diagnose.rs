@@ -24,6 +24,7 @@ pub mod signals;
 pub mod term;
 pub mod threshold;
 pub mod thresholds;
+pub mod tool_position;
 pub mod verdict;
 
 use anyhow::{Result, bail};
@@ -85,7 +86,7 @@ pub fn diagnose(
     // Held at one depth a memory fades and a loop does not.
     let is_one_speed = ["one_speed", "no_hold"].iter().all(|code| findings.iter().any(|finding| finding.code == *code));
     let recorded = Recorded { rig, origin, trials, figures: &figures, is_one_speed, seed, say };
-    let channels = recorded.identified()?;
+    let (channels, at_the_tool) = tool_position::told_at_the_tool(&recorded, recorded.identified()?)?;
     let felt = channels.finding();
     let Channels { mut contact, drive, .. } = channels;
     if let Some(contact) = &mut contact {
@@ -94,7 +95,7 @@ pub fn diagnose(
     let Some(((mut answer, pictures), improved)) = together(rig, contact.as_ref(), drive.as_ref()) else {
         bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
     };
-    answer.findings.splice(0..0, findings.into_iter().chain(divided.finding).chain(felt));
+    answer.findings.splice(0..0, findings.into_iter().chain(divided.finding).chain(felt).chain(at_the_tool));
     let alternatives = contact.as_ref().map(|contact| contact_report::alternative_rigs(&improved, contact));
     Ok(Found { answer, pictures, improved, alternatives: alternatives.unwrap_or_default() })
 }

@@ -13,4 +13,6 @@ pub struct Innovations {
     pub disturbance: Vec<f64>,
     /// Encoder row less its smoothed position, m or rad; zero where a stretch starts. Of two bodies, where the disturbance was asked for.
     pub residual: Vec<f64>,
+    /// By how much the motor is ahead of the load, smoothed, m or rad. Of two bodies, where the disturbance was asked for.
+    pub stretch: Vec<f64>,
 }

@@ -258,6 +258,14 @@ struct PairRow {
     gain: [f64; STATES],
     coupled: bool,
     pair: usize,
+    /// The motor's lead over the load after the row, and its covariance with each state.
+    stretch: f64,
+    spread: [f64; STATES],
+}
+
+/// Covariance of the motor's lead over the load with each state.
+fn of_stretch(covariance: &Matrix<STATES>) -> [f64; STATES] {
+    std::array::from_fn(|column| covariance[0][column] - covariance[2][column])
 }
 
 /// Two bodies on `link` under `inputs`; with `smooth` the disturbance is smoothed, too.
@@ -293,7 +301,8 @@ pub fn two_bodies(
             uncertainty =
                 Uncertainty { covariance: unknown_pair(trial, &link, encoder, effort), ..Uncertainty::default() };
             if smooth {
-                history.push(PairRow { gain: [0.0; STATES], coupled: true, pair: 0 });
+                let spread = of_stretch(&uncertainty.covariance);
+                history.push(PairRow { gain: [0.0; STATES], coupled: true, pair: 0, stretch: 0.0, spread });
             }
             out.velocity[row] = rate;
             continue;
@@ -310,11 +319,12 @@ pub fn two_bodies(
         law.friction.follow(&mut slips, gain[0] * innovation);
         (out.innovation[row], out.variance[row], out.velocity[row]) = (innovation, variance, state[measured + 1]);
         if smooth {
-            history.push(PairRow { gain, coupled, pair: at });
+            let (stretch, spread) = (state[0] - state[2], of_stretch(&uncertainty.covariance));
+            history.push(PairRow { gain, coupled, pair: at, stretch, spread });
         }
     }
     if smooth {
-        (out.disturbance, out.residual) = smoothed_pair(trial, &link, noise, &out, &history, &pairs);
+        [out.disturbance, out.residual, out.stretch] = smoothed_pair(trial, &link, noise, &out, &history, &pairs);
     }
     out
 }
@@ -342,7 +352,8 @@ fn unknown_pair(trial: &DriveTrial, link: &Link, encoder: f64, effort: f64) -> M
     covariance
 }
 
-/// Disturbance smoother, as that of one body with the pair of each row; and what it leaves of each encoder row.
+/// Disturbance smoother, as that of one body with the pair of each row; what it leaves of each encoder row; and the motor's smoothed lead
+/// over the load, x + P r of each row with what all later rows say (P. de Jong, *J. Am. Stat. Assoc.* 83, 1988).
 fn smoothed_pair(
     trial: &DriveTrial,
     link: &Link,
@@ -350,16 +361,17 @@ fn smoothed_pair(
     pass: &Innovations,
     history: &[PairRow],
     pairs: &[Pair],
-) -> (Vec<f64>, Vec<f64>) {
+) -> [Vec<f64>; 3] {
     let measured = if link.encoder == Side::Load { 2 } else { 0 };
-    let (mut force, mut residual) = (vec![0.0; trial.len()], vec![0.0; trial.len()]);
+    let [mut force, mut residual, mut lead] = [(); 3].map(|()| vec![0.0; trial.len()]);
     let mut next = [0.0; STATES];
     for row in (0..trial.len()).rev() {
+        let PairRow { gain, coupled, pair, stretch, spread } = &history[row];
+        lead[row] = stretch + spread.iter().zip(&next).map(|(spread, next)| spread * next).sum::<f64>();
         if trial.restart[row] {
             next = [0.0; STATES];
             continue;
         }
-        let PairRow { gain, coupled, pair } = &history[row];
         let pair = &pairs[*pair];
         let along: f64 = gain.iter().zip(&next).map(|(gain, next)| gain * next).sum();
         let mut adjoint = next;
@@ -371,7 +383,7 @@ fn smoothed_pair(
         force[row] = noise.disturbance() / pair.step * seen;
         next = transposed_product(&pair.transition[regime], &adjoint);
     }
-    (force, residual)
+    [force, residual, lead]
 }
 
 #[cfg(test)]
@@ -448,6 +460,34 @@ mod tests {
         law.friction.coulomb = 5.0;
         // 5 N on 0.42 kg take 12 mm/s in a row.
         assert!(alone(&law, [0.5e-3, 1e-3, 0.0, 0.0]));
+    }
+
+    /// A load that is pushed by a force of its own, seen by an encoder of 1 um on the motor alone.
+    #[test]
+    fn the_lead_of_a_motor_is_smoothed_to_a_hundredth_of_it() {
+        let (law, link) = pair_law(2_000.0);
+        let exact = Coupled::new(&law, &link, 1e-3);
+        let push = |row: usize, hz: f64| 2.0 * (std::f64::consts::TAU * hz * 1e-3 * row as f64).cos();
+        let rows = 4000;
+        let time: Vec<f64> = (0..rows).map(|row| 1e-3 * row as f64).collect();
+        let effort: Vec<f64> = (0..rows).map(|row| push(row, 1.3)).collect();
+        let force: Vec<f64> = (0..rows).map(|row| 0.5 * push(row, 2.9)).collect();
+        // The filter begins with no stretch, give or take what the first effort would make of it, 0.3 mm.
+        let mut state = [0.3e-3, 0.0, 0.0, 0.0];
+        let (mut position, mut lead) = (vec![state[0]], vec![state[0] - state[2]]);
+        for row in 1..rows {
+            state = exact.after(&state, [effort[row - 1], -0.5 * (force[row - 1] + force[row])]);
+            position.push(state[0] + 1e-6 * (row as f64 * 1.618).sin());
+            lead.push(state[0] - state[2]);
+        }
+        let trial = DriveTrial::new("lead.csv".to_owned(), time, &position, effort, Some(force), 1);
+        let noise = Noise { ln_disturbance: (1e-9f64).ln(), ln_encoder: (1e-12f64).ln() };
+        let pass = two_bodies(&trial, &Inputs::of(&trial, &law), &law, link, &noise, true);
+        let rms = |values: &mut dyn Iterator<Item = f64>| (values.map(|x| x * x).sum::<f64>() / rows as f64).sqrt();
+        let error = rms(&mut pass.stretch.iter().zip(&lead).map(|(found, truth)| found - truth));
+        // From the first row on, whose lead only later rows tell.
+        assert!(error < 0.01 * rms(&mut lead.iter().copied()), "{error}");
+        assert!((pass.stretch[0] - lead[0]).abs() < 0.02 * lead[0], "{} {}", pass.stretch[0], lead[0]);
     }
 
     #[test]
