@@ -116,7 +116,8 @@ fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, 
     let nominal = nominal_fit(&data, rig, scales, encoder_variance)?;
     // A recording may be late by some rows. Where a lag of the drive is worth its value beside a punctual recording, it is the lag.
     let lag = punctual_and_lagged(&data, rig, &nominal, encoder_variance).and_then(|[punctual, lagged]| {
-        let search = search_from(data, rig, punctual);
+        // It was found already: however little of the effort it is, it is looked for.
+        let search = Search { is_asked: true, ..search_from(data, rig, punctual) };
         search.is_worth(&lagged, &search.nominal).then_some(search)
     });
     let search = lag.unwrap_or_else(|| search_from(data, rig, nominal));
@@ -132,7 +133,7 @@ fn search_from<'a>(data: Data<'a>, rig: &NominalDrive, nominal: Fit) -> Search<'
     let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
     let band_hz = crossing.clamp(LOWEST_BAND_HZ.min(0.1 / scales.period_s), 0.4 / scales.period_s);
     let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
-    Search { data, scales, nominal, band_hz, sides }
+    Search { data, scales, nominal, band_hz, sides, is_asked: false }
 }
 
 /// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.

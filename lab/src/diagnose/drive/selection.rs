@@ -25,6 +25,8 @@ pub struct Search<'a> {
     pub band_hz: f64,
     /// Sides of a transmission on which the encoder may sit.
     pub sides: Vec<Side>,
+    /// Whether terms are looked for however little of the effort is unexplained.
+    pub is_asked: bool,
 }
 
 /// What was chosen, and the sets that it was chosen from.
@@ -123,7 +125,7 @@ impl Search<'_> {
         let mut sets = Vec::new();
         let mut link_searches = 0;
         let mut is_waiting = false;
-        let is_negligible = self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort;
+        let is_negligible = !self.is_asked && self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort;
         for round in 0..if is_negligible { 0 } else { MOST_TERMS } {
             say(&format!("the drive: {} terms and one more", round));
             let mut grown: Vec<Fit> = Vec::new();
