@@ -19,6 +19,8 @@ mod reading;
 mod resolved;
 mod sensor;
 
+pub use contact::hysteresis::{HYSTERESIS_BETWEEN, HYSTERESIS_SLIP};
+pub use contact::layered_stiffness::LAYERS_OF_FORMS;
 pub use contact::learned::{LEARNED_FORM, LEARNED_KNOTS};
 pub use contact_simulator::{ActiveEffect, ContactSimulator};
 pub use contact_state::{ContactState, gate, ramp, rounded};
@@ -68,6 +70,17 @@ pub trait Effect: Sync {
     /// `stiffness`: the same law. The values are as many.
     fn simpler(&self, _form: usize, _values: &[f64], _stiffness: f64) -> Option<(usize, Vec<f64>)> {
         None
+    }
+
+    /// The form that holds form `form` with `values` as a special case and one feature more, with values that its search starts from;
+    /// `None` where there is none.
+    fn refined(&self, _form: usize, _values: &[f64], _scene: &ExcitationStats) -> Option<(usize, Vec<Vec<f64>>)> {
+        None
+    }
+
+    /// Whether the force may fall on the way in by form `form`, and rise again: over a click, or where a dome snaps through.
+    fn may_fall(&self, _form: usize) -> bool {
+        false
     }
 
     /// Whether form `form` with `values` is what the effect's statement says, and no other law in its clothes, where the tool goes

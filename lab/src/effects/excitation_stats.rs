@@ -1,7 +1,7 @@
 //! The measures of a set of recordings, from which every search takes its scale: nothing is absolute.
 
 /// What the recordings and the nominal model fitted to them measure.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ExcitationStats {
     /// Greatest depth in contact, m or rad; zero without contact.
     pub depth: f64,

@@ -1,7 +1,7 @@
 //! All effects by the same rules: off at zero, and each does something.
 
 use crate::bench::{REFERENCE, apart, force, largest, rig, run, with};
-use palpate_lab::effects::{ALL, ExcitationStats, to_table};
+use palpate_lab::effects::{ALL, Effect, ExcitationStats, to_table};
 use palpate_lab::recording::Recording;
 use palpate_lab::rig::{Rig, Sensors};
 
@@ -36,6 +36,16 @@ fn furthest(one: &Recording, other: &Recording) -> f64 {
     apart(force(one), force(other)).max(apart(&one.position, &other.position)).max(apart(&effort(one), &effort(other)))
 }
 
+/// The first start of a form that is looked for from a simpler one alone.
+fn refined_start(effect: &dyn Effect, form: usize) -> Option<Vec<f64>> {
+    (0..form).find_map(|simpler| {
+        let start = effect.starts(simpler, &scene()).into_iter().next().map(|start| start.values);
+        let values = start.or_else(|| refined_start(effect, simpler))?;
+        let (finer, starts) = effect.refined(simpler, &values, &scene())?;
+        starts.into_iter().next().filter(|_| finer == form)
+    })
+}
+
 #[test]
 fn every_effect_runs_at_its_first_start_and_changes_something() {
     let nominal = rig(REFERENCE, true);
@@ -44,14 +54,15 @@ fn every_effect_runs_at_its_first_start_and_changes_something() {
     for effect in ALL {
         let spec = effect.spec();
         for form in 0..spec.forms.len() {
-            let Some(start) = effect.starts(form, &scene()).into_iter().next() else {
+            let start = effect.starts(form, &scene()).into_iter().next().map(|start| start.values);
+            let Some(values) = start.or_else(|| refined_start(effect, form)) else {
                 // What is periodic in time starts from the strongest tone of the residual; what is so in position has no start.
                 let begins = ["gravity_load", "cogging"].contains(&spec.name)
                     || effect.frequency_search(form, &scene()).is_some();
                 assert!(begins, "{} {} has no start", spec.name, spec.forms[form].name);
                 continue;
             };
-            let table = to_table(effect, form, nominal.coordinate, &start.values, None);
+            let table = to_table(effect, form, nominal.coordinate, &values, None);
             let recording = run(&Rig { effects: vec![table], ..nominal.clone() });
             let name = format!("{} {}", spec.name, spec.forms[form].name);
             let is_sound = |values: &[f64]| values.iter().all(|value| value.is_finite());
