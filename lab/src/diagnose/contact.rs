@@ -1,5 +1,6 @@
 //! The contact by a model of its force: position in, force out.
 
+pub mod broken_line;
 pub mod circumstances;
 mod colour;
 pub mod composed;
@@ -16,7 +17,9 @@ pub mod outcome;
 pub mod own_values;
 pub mod prepare;
 pub mod projection;
+pub mod refined;
 pub mod scales;
+pub mod seen_layers;
 pub mod selection;
 pub mod spline;
 #[cfg(test)]

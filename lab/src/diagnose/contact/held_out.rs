@@ -3,7 +3,8 @@
 use super::fit::{Data, Effort, Fit};
 use super::model::{ContactModel, index};
 
-/// Two halves of the rows: every other trial, or every other block of a single one. Each is fitted once and judged once.
+/// Two halves of the rows: every other trial, or every other block of a single one, of which there are so many that both halves see every
+/// force. Each is fitted once and judged once.
 pub struct Folds {
     /// For each half, whether each row of each trial belongs to it.
     halves: [Vec<Vec<bool>>; 2],
@@ -17,8 +18,12 @@ pub struct HeldOut {
     pub energy: f64,
 }
 
-/// Blocks of a single trial.
+/// Blocks of a single trial, the fewest and the most.
 const BLOCKS: usize = 40;
+const MOST_BLOCKS: usize = 320;
+
+/// Part of the force's range that either half of a single trial has to see: a stop that lies within one block is known to one half alone.
+const SEEN_BY_BOTH: f64 = 0.8;
 
 /// Steps of the search on a half, from the values of the whole.
 const STEPS: Effort = Effort(6);
@@ -27,7 +32,27 @@ impl Folds {
     /// The halves of the rows of `data`.
     #[must_use]
     pub fn of(data: &Data<'_>) -> Self {
-        Self::with_blocks(data, BLOCKS)
+        let doubled = std::iter::successors(Some(BLOCKS), |blocks| Some(2 * blocks));
+        let mut tried =
+            doubled.take_while(|blocks| *blocks < MOST_BLOCKS).map(|blocks| Self::with_blocks(data, blocks));
+        tried.find(|folds| folds.both_see(data)).unwrap_or_else(|| Self::with_blocks(data, MOST_BLOCKS))
+    }
+
+    /// Whether either half of a single trial sees most of the force's range.
+    fn both_see(&self, data: &Data<'_>) -> bool {
+        if data.trials.len() > 1 {
+            return true;
+        }
+        let rows = || data.trials[0].force.iter().zip(&data.weights[0]).zip(&self.halves[0][0]);
+        let range = |wanted: Option<bool>| {
+            let counted =
+                rows().filter(|((_, weight), is_first)| **weight > 0.0 && wanted.is_none_or(|half| half == **is_first));
+            let ends = counted.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], ((force, _), _)| {
+                [low.min(*force), high.max(*force)]
+            });
+            ends[1] - ends[0]
+        };
+        [true, false].into_iter().all(|half| range(Some(half)) >= SEEN_BY_BOTH * range(None))
     }
 
     /// The same with `blocks` of a single trial.

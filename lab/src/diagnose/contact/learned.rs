@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::broken_line::DepthProfile;
 use super::criteria::{LEAST_HELD_OUT_SHARE, NOTABLE_POWER};
 use super::fit::{Data, Fit, Rest};
 use super::held_out::{Folds, rms};
@@ -94,9 +95,6 @@ const BEFORE_SURFACE: f64 = 0.25;
 /// Travels of a turn that are tried, of the way.
 const TURNS: [f64; 2] = [0.003, 0.3];
 
-/// Stretches of the way that the force's mean is taken over.
-const BINS: usize = 300;
-
 /// Blocks of a single trial, every other of which teaches: some of them between two knots.
 const BLOCKS: usize = 10 * LEARNED_KNOTS;
 
@@ -119,7 +117,10 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     if !way.is_finite() || way <= 0.0 {
         return None;
     }
-    let places = places(data.trials, surface, [from, high]);
+    let rest: Vec<Vec<f64>> =
+        (0..data.trials.len()).map(|trial| data.residual(&law.model, &law.values, trial)).collect();
+    let profile = DepthProfile::of(data.trials, &rest, [from, high].map(|place| surface + place));
+    let places: Vec<f64> = profile.corners(LEARNED_KNOTS).into_iter().map(|place| place - surface).collect();
     let turns = geometric(TURNS[0] * way, TURNS[1] * way, 5);
     let splines = turns.iter().map(|turn| Spline::of(data, law, &model, *turn, &places, &folds));
     let (spline, penalty, _) = splines
@@ -145,43 +146,6 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     let paths = paths(&fit, &data.trials[0], [surface + from, surface + high]);
     let covariance = spline.covariance(penalty, &Rest::of(data, &fit))?;
     Some(LearnedCurve { fit, residual: unseen.residual, held_out_share: held_out_share.min(1.0), covariance, paths })
-}
-
-/// Where the knots lie between `ends`, from `surface` inwards: half of them as the way, half as the force goes, so that a stop that is
-/// steep has as many as a spring that is long.
-fn places(trials: &[ContactTrial], surface: f64, ends: [f64; 2]) -> Vec<f64> {
-    let bin = (ends[1] - ends[0]) / BINS as f64;
-    let mut sums = vec![(0.0, 0usize); BINS];
-    for trial in trials {
-        for (position, force) in trial.position.iter().zip(&trial.force) {
-            let at = (position - surface - ends[0]) / bin;
-            if at >= 0.0 {
-                let (sum, count) = &mut sums[(at as usize).min(BINS - 1)];
-                (*sum, *count) = (*sum + force, *count + 1);
-            }
-        }
-    }
-    let mut force = 0.0;
-    let mut changes: Vec<f64> = Vec::with_capacity(BINS);
-    for (at, (sum, count)) in sums.into_iter().enumerate() {
-        let mean = if count > 0 { sum / count as f64 } else { force };
-        changes.push(if at == 0 { 0.0 } else { (mean - force).abs() });
-        force = mean;
-    }
-    let total = changes.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let mut places = vec![ends[0]];
-    let mut done = 0.0;
-    for (at, change) in changes.iter().enumerate() {
-        done += 0.5 * (change / total + 1.0 / BINS as f64);
-        if places.len() < LEARNED_KNOTS - 1 && done * (LEARNED_KNOTS - 1) as f64 >= places.len() as f64 {
-            places.push(ends[0] + (at as f64 + 1.0) * bin);
-        }
-    }
-    // A force that leaps within one bin would leave knots over: they share the last stretch.
-    let last = places[places.len() - 1];
-    let left = LEARNED_KNOTS - places.len();
-    places.extend((1..=left).map(|nth| last + (ends[1] - last) * nth as f64 / left as f64));
-    places
 }
 
 /// In from `ends[0]` to `ends[1]` and out again, so slowly that nothing asks for the speed.

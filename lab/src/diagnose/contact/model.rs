@@ -93,6 +93,28 @@ const ZERO_PRIOR: f64 = 0.1;
 const LEAST_FALL: f64 = 0.02;
 const PATH_POINTS: usize = 60;
 
+/// A force that falls on the way in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fall {
+    /// And goes on falling, or stays low, as far in as the tool went.
+    ToTheEnd,
+    /// And rises again: a pocket.
+    Pocket,
+}
+
+/// The largest fall along `path`, if it is more than `least`: a pocket where the force rises again by as much.
+fn fall_along(path: &[f64], least: f64) -> Option<Fall> {
+    let (mut highest, mut most, mut bottom) = (f64::NEG_INFINITY, 0.0, 0);
+    for (at, force) in path.iter().enumerate() {
+        highest = force.max(highest);
+        if highest - force > most {
+            (most, bottom) = (highest - force, at);
+        }
+    }
+    let rises = path[bottom..].iter().any(|force| force - path[bottom] > least);
+    (most > least).then_some(if rises { Fall::Pocket } else { Fall::ToTheEnd })
+}
+
 /// Deviation of the logarithm of a trial's own factor: spots of one body differ by factors of 1.2 to 1.7.
 const SCALE_PRIOR: f64 = 0.4;
 
@@ -246,28 +268,31 @@ impl ContactModel {
         if self.bilateral { self.scales.travel() } else { self.scales.depth }
     }
 
-    /// Whether the spring's force falls on the way in, by more than a fiftieth of its range: as over a click, or where a column
+    /// How the spring's force falls on the way in, where it does by more than a fiftieth of its range: as over a click, or where a column
     /// buckles. A spring that hardens, softens or lies on another does not.
     #[must_use]
-    pub fn has_falling_spring(&self, values: &[f64]) -> bool {
+    pub fn fall(&self, values: &[f64]) -> Option<Fall> {
         let all = self.acting(Place::Contact, values, 0);
         let held: Vec<ActiveEffect<'_>> =
             all.iter().map(active).filter(|active| active.stage() == Stage::Law).collect();
         if held.is_empty() {
-            return false;
+            return None;
         }
         let contact =
             Contact { surface: 0.0, stiffness: values[index::STIFFNESS], damping: 0.0, bilateral: self.bilateral };
         let mut law = ContactSimulator::new(contact, &held);
         let depth = self.deepest(values);
-        let (mut highest, mut fall) = (0.0f64, 0.0f64);
-        for point in 0..PATH_POINTS {
-            let position = depth * point as f64 / (PATH_POINTS - 1) as f64;
-            let force = law.step(point as f64, 1.0, position, 0.0, 0.0, 0.0);
-            highest = highest.max(force);
-            fall = fall.max(highest - force);
-        }
-        fall > LEAST_FALL * highest
+        let path: Vec<f64> = (0..PATH_POINTS)
+            .map(|point| law.step(point as f64, 1.0, depth * point as f64 / (PATH_POINTS - 1) as f64, 0.0, 0.0, 0.0))
+            .collect();
+        let least = LEAST_FALL * path.iter().fold(0.0f64, |most, force| most.max(*force));
+        fall_along(&path, least)
+    }
+
+    /// Whether some effect of it may let the force fall.
+    #[must_use]
+    pub fn may_fall(&self) -> bool {
+        self.terms.iter().any(|term| term.effect.may_fall(term.form))
     }
 
     /// Frequencies of the waves that its effects hold, Hz.
@@ -442,13 +467,16 @@ mod tests {
     }
 
     #[test]
-    fn a_spring_that_falls_on_the_way_in_is_told_from_one_that_softens() {
+    fn a_spring_that_falls_on_the_way_in_is_told_from_one_that_softens_and_a_pocket_from_both() {
         // 300 N/m, by 250 N/m less from 4 mm on, and by 500 N/m less: there the force falls.
         let falls = |added: f64| {
             let (model, values) = law("layered_stiffness", 0, &[added, 4e-3]);
-            model.has_falling_spring(&values)
+            (model.fall(&values), model.may_fall())
         };
-        assert!(!falls(-250.0) && falls(-500.0));
-        assert!(!falls(900.0));
+        assert_eq!(falls(-250.0), (None, false));
+        assert_eq!(falls(-500.0), (Some(Fall::ToTheEnd), false));
+        assert_eq!(falls(900.0), (None, false));
+        let (model, values) = law("layered_stiffness", 2, &[-500.0, 3e-3, 900.0, 5e-3]);
+        assert_eq!((model.fall(&values), model.may_fall()), (Some(Fall::Pocket), true));
     }
 }

@@ -291,7 +291,9 @@ fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held
         };
     }
     let is_told = 1.0 - left / all > TOLD_SHARE;
-    if is_notable && (!is_told || rest.over_sensors > MOST_LEFT * search.nominal.energy / expected) {
+    // Layers say where a force falls, and not what lets it fall: a column that buckles, a leaf, a magnet.
+    let falls = fit.model.fall(&fit.values).is_some() && search.nominal.model.fall(&search.nominal.values).is_none();
+    if falls || is_notable && (!is_told || rest.over_sensors > MOST_LEFT * search.nominal.energy / expected) {
         Verdict::PartlyExplained
     } else {
         Verdict::Explained

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::circumstances::Circumstances;
 use super::criteria::LEAST_GAIN;
 use super::fit::{Data, Effort, Fit, Rest};
-use super::model::{ContactModel, index};
+use super::model::{ContactModel, Fall, index};
 use super::own_values::{fewer_own_values, moved_values, own_values};
 use super::projection::{Projection, Promise};
 use super::tones::is_in_step;
@@ -45,7 +45,7 @@ const COARSELY_POLISHED: usize = 10;
 const POLISHED: usize = 5;
 
 /// Effects at most.
-const MOST_TERMS: usize = 4;
+pub(super) const MOST_TERMS: usize = 4;
 
 /// Sets that are looked at for one whose effects stand beside one another.
 const MOST_SURVIVORS: usize = 8;
@@ -57,14 +57,18 @@ const LEAST_STIFFNESS: f64 = 0.1;
 const SURFACES: [f64; 3] = [-0.3, 0.15, 0.4];
 
 /// Squares a row, over the sensors' own, from which much is missing.
-const FAR_ENERGY: f64 = 4.0;
+pub(super) const FAR_ENERGY: f64 = 4.0;
 
 impl Search<'_> {
     /// Whether `fit` is a law that its effects stand for: no value at the end of what the recordings show, none by which an effect is not
     /// what it is called, no wave that has slid into step with the motion, and no spring whose force falls on the way in, unless the rig
-    /// file has one.
+    /// file has one or it is a pocket of an effect that may have one.
     pub(super) fn is_admissible(&self, fit: &Fit) -> bool {
-        let falls = |fit: &Fit| fit.model.has_falling_spring(&fit.values);
+        let falls = |fit: &Fit| match fit.model.fall(&fit.values) {
+            Some(Fall::Pocket) => !fit.model.may_fall(),
+            Some(Fall::ToTheEnd) => true,
+            None => false,
+        };
         let mut frequencies = fit.model.frequencies(&fit.values).into_iter();
         !fit.model.is_at_end(&fit.values)
             && fit.model.is_as_stated(&fit.values)
@@ -74,12 +78,12 @@ impl Search<'_> {
 
     /// Whether the recordings cannot distinguish the laws of two sets of effects, whatever they leave: at one speed each way and
     /// without a hold a Maxwell branch, `branch_stiffness v relaxation_time (1 - exp(-t / relaxation_time))` after a reversal, is Dahl's
-    /// loop over `v t`.
+    /// loop over `v t`, and a force that is late by a time is that of a tip that lags by a way.
     #[must_use]
     pub fn is_one_law(&self, one: &ContactModel, other: &ContactModel) -> bool {
         let kinds = |model: &ContactModel| {
-            let mut names = sorted_names(model);
-            names.iter_mut().filter(|name| **name == "stress_relaxation").for_each(|name| *name = "hysteresis");
+            let mut names: Vec<&str> =
+                sorted_names(model).into_iter().map(|name| by_travel(name).unwrap_or(name)).collect();
             names.sort_unstable();
             names.dedup();
             names
@@ -97,7 +101,7 @@ impl Search<'_> {
         let mut waiting = 0;
         for round in 0..MOST_TERMS + 1 {
             say(&format!("the contact: {round} effects and one more"));
-            let mut grown: Vec<Fit> = Vec::new();
+            let mut grown = if round == 0 { self.seen_layers() } else { Vec::new() };
             for base in &beam {
                 let quick = self.grown(base);
                 grown.extend(self.polished(quick));
@@ -142,6 +146,13 @@ impl Search<'_> {
         sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         let fit = self.surviving(fit, &sets);
         let fit = self.simplest(fit, &sets);
+        let fit = self.without_times(fit, &sets);
+        let simple = fit.model.clone();
+        let fit = self.refined(fit, say);
+        if fit.model != simple {
+            // Its weights are those of a finer law: what was found before is compared under the same.
+            sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
+        }
         let fit = self.with_lines(fit, &mut sets);
         Chosen { fit, sets }
     }
@@ -157,7 +168,7 @@ impl Search<'_> {
     }
 
     /// `base` with each promising effect, and with what each trial may have for itself, the best first.
-    fn grown(&self, base: &Fit) -> Vec<Fit> {
+    pub(super) fn grown(&self, base: &Fit) -> Vec<Fit> {
         let data = &self.coarse;
         let model = &base.model;
         let promises = self.promises(base, &|_| true);
@@ -214,7 +225,7 @@ impl Search<'_> {
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
     /// as well the one with the fewest is polished, and leaves room for other effects.
-    fn polished(&self, quick: Vec<Fit>) -> Vec<Fit> {
+    pub(super) fn polished(&self, quick: Vec<Fit>) -> Vec<Fit> {
         self.to_the_end(distinct(self.coarsely_polished(quick)))
     }
 
@@ -299,9 +310,10 @@ impl Search<'_> {
         worthy.into_iter().take(MOST_SURVIVORS).find_map(stands).unwrap_or(fit)
     }
 
-    /// The simplest of `sets` that the recordings do not tell from `best`; that where there is none.
+    /// The simplest of `sets` that the recordings do not tell from `best`, nor what is left of it without the effects that are not worth having
+    /// there; `best` where there is none.
     fn simplest(&self, best: Fit, sets: &[Fit]) -> Fit {
-        let is_as_good = |other: &&Fit| {
+        let is_as_good = |other: &Fit| {
             let more = free(&best).saturating_sub(free(other));
             let worth = self.worth(&best, other);
             more > 0
@@ -309,9 +321,25 @@ impl Search<'_> {
                 && (worth.gain < LEAST_GAIN + worth.price * more as f64 || !are_told_apart(&worth))
                 && self.is_worth(other, &self.nominal)
         };
-        let simpler =
-            sets.iter().filter(is_as_good).min_by(|a, b| free(a).cmp(&free(b)).then(a.energy.total_cmp(&b.energy)));
-        simpler.map_or(best.clone(), |simpler| self.pruned(simpler.clone()))
+        let mut simpler: Vec<&Fit> = sets.iter().filter(|other| is_as_good(other)).collect();
+        simpler.sort_by(|a, b| free(a).cmp(&free(b)).then(a.energy.total_cmp(&b.energy)));
+        let mut pruned = simpler.into_iter().take(MOST_SURVIVORS).map(|simpler| self.pruned(simpler.clone()));
+        pruned.find(is_as_good).unwrap_or(best)
+    }
+
+    /// `fit`; where the recordings show one speed, the likeliest of `sets` that is the same law there, by ways and not by times, if they do
+    /// not tell it from `fit`: a way was seen, and a time was not.
+    fn without_times(&self, fit: Fit, sets: &[Fit]) -> Fit {
+        let has_times = |fit: &Fit| sorted_names(&fit.model).into_iter().any(|name| by_travel(name).is_some());
+        if !has_times(&fit) {
+            return fit;
+        }
+        let same = sets.iter().filter(|other| !has_times(other) && self.is_one_law(&other.model, &fit.model));
+        let least = same.min_by(|a, b| a.energy.total_cmp(&b.energy));
+        match least.filter(|other| !are_told_apart(&self.worth(&fit, other))) {
+            Some(other) => self.pruned(other.clone()),
+            None => fit,
+        }
     }
 
     /// `fit` without term `at`, refitted.
@@ -348,6 +376,15 @@ pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
         }
     }
     (model, values)
+}
+
+/// The law by a way that one by a time, `name`, is at one speed; `None` where it is none.
+fn by_travel(name: &str) -> Option<&'static str> {
+    match name {
+        "stress_relaxation" => Some("hysteresis"),
+        "channel_delay" | "force_lag" => Some("lost_motion"),
+        _ => None,
+    }
 }
 
 /// The first of each set of names.
