@@ -98,7 +98,7 @@ impl Recorded<'_> {
             return Ok(Vec::new());
         }
         let likelihood = |drive: Option<(Vec<DriveTrial>, NominalDrive)>| {
-            drive.and_then(|(trials, nominal)| drive::outcome::nominal_likelihood(&trials, &nominal))
+            drive.and_then(|(trials, nominal)| drive::identification::nominal_likelihood(&trials, &nominal))
         };
         // A search takes long: it is asked where the nominal law fits better already.
         if likelihood(self.prepared(self.trials)?) <= likelihood(self.prepared(acted)?) {
@@ -122,7 +122,8 @@ impl Recorded<'_> {
     /// The drive in `trials`.
     fn drive(&self, trials: &[Recording]) -> Result<Option<drive::outcome::Outcome>> {
         let prepared = self.prepared(trials)?;
-        Ok(prepared.and_then(|(trials, nominal)| drive::outcome::identify(trials, &nominal, self.seed, self.say)))
+        Ok(prepared
+            .and_then(|(trials, nominal)| drive::identification::identify(trials, &nominal, self.seed, self.say)))
     }
 
     /// `trials` as the drive's model sees them, and what the rig says of it; effects that it already holds are nominal.

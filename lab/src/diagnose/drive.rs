@@ -5,21 +5,32 @@
 //! Jorgensen, *Computers and Chemical Engineering* 28, 2004; Ljung, *System Identification*, 1999). Nothing is differentiated and no
 //! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
 //!
-//! [`trial`] and [`input`] are the data, [`law`], [`presliding`] and [`noise`] the equations, [`filter`] gives the [`innovations`] of one body or two,
-//! [`model`] and [`term`] are what can be in a law, [`fit`] the likelihood, [`nominal`] the law of the rig file, [`candidates`],
-//! [`links`] and [`selection`] the choice with its [`criteria`], [`held_out`] and [`interval`] the evidence, [`outside_force`] the
-//! stretches in which something else pushes, and [`outcome`] the answer.
+//! [`trial`] and [`input`] are the data; [`law`], [`dry_friction`], [`presliding`], [`two_mass_system`] and [`noise`] the equations.
+//! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
+//! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
+//! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`], [`links`] and [`selection`] choose what stands beside it by
+//! the [`criteria`]. [`held_out`], [`interval`], [`validation`], [`lack_of_fit`] and [`alternatives`] are the evidence, of which
+//! [`judgement`] makes the [`outcome`]; [`outside_force`] finds stretches in which something else pushes, and [`identification`] is the
+//! way from trials to the answer.
 
+pub mod alternatives;
 pub mod candidates;
 pub mod criteria;
+pub mod dry_friction;
 pub mod expected_noise;
 pub mod filter;
 pub mod fit;
 pub mod held_out;
+pub mod identification;
 pub mod innovations;
 pub mod input;
 pub mod interval;
+pub mod judgement;
+pub mod lack_of_fit;
 pub mod law;
+pub mod levenberg_marquardt;
+pub mod likelihood;
+pub mod linearisation;
 pub mod links;
 pub mod matrix;
 pub mod median;
@@ -27,16 +38,23 @@ pub mod missing_force;
 pub mod model;
 pub mod named;
 pub mod noise;
+pub mod noise_search;
 pub mod nominal;
 pub mod one_body_filter;
 pub mod outcome;
 pub mod outside_force;
 pub mod prepare;
 pub mod presliding;
+pub mod range;
+pub mod scales;
 pub mod selection;
 pub mod term;
 pub mod trial;
 pub mod two_body_filter;
+pub mod two_body_smoother;
+pub mod two_mass_motion;
+pub mod two_mass_system;
+pub mod validation;
 
 #[cfg(test)]
 mod testing;

@@ -3,10 +3,12 @@
 use rayon::prelude::*;
 
 use super::criteria::{LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_SHARE};
-use super::fit::{Data, Effort, Fit, fit};
+use super::fit::{Effort, Fit, fit};
+use super::likelihood::Data;
 use super::model::{Model, NOMINAL, index};
 use super::noise::Noise;
-use super::term::{Scales, Term, wavenumber};
+use super::scales::Scales;
+use super::term::{Term, wavenumber};
 
 /// A term and the values that its search starts from.
 pub struct Candidate {

@@ -46,6 +46,44 @@ thresholds! { "drive";
     /// Part of a mismatch that a free curve over position leaves of what named physics leaves, below which the names are not believed
     /// alone.
     CURVE_PART = 0.5, "1", chosen;
+    /// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.
+    LEAST_HELD_OUT_SHARE = 0.12, "1", chosen;
+    /// Times the sensors' own noise from which a missing force is one.
+    OVER_NOISE = 1.5, "1", chosen;
+    /// Factor by which refitted values have to lessen what is missing before they are told as wrong.
+    VALUES_MATTER = 1.15, "1", chosen;
+    /// Factor between the rig file's inertia and one that is still believed to be this drive's. Chosen: without a bound a law that lacks
+    /// a weight explains a pendulum by an inertia that hardly moves.
+    INERTIA_FACTOR = 5.0, "1", chosen;
+    /// Standard deviation of the factor by which the load of a rigid-body model is wrong; beyond three of them it is another load, which is
+    /// physics. Chosen: on the arms whose load was at hand (masses from drawings, a payload that is known to a third) the closest
+    /// factors were 0.92 to 0.96. Where the load moves with the acceleration, as that of an arm does, a wider range lets factor and inertia
+    /// stand for each other.
+    LOAD_DEVIATION = 0.05, "1", chosen;
+    /// Latest effort that is a late recording and no lag, in encoder rows: a fieldbus takes some cycles.
+    LATEST_ROWS = 20.0, "rows", chosen;
+    /// The same at least, s.
+    LATEST_S = 0.02, "s", chosen;
+    /// Least exponent of the speed of a friction that is told from dry friction.
+    LEAST_EXPONENT = 0.15, "1", chosen;
+    /// Greatest exponent of it that is told from viscous friction.
+    MOST_EXPONENT = 0.9, "1", chosen;
+    /// Longest way over which dry friction can build up, over the travel: what bends a fiftieth of the travel before it slides is a spring.
+    LONGEST_PRESLIDING = 0.02, "1", chosen;
+    /// Least share of the inertia that a load beyond a link can have.
+    LEAST_LOAD_SHARE = 0.2, "1", chosen;
+    /// Greatest share of it.
+    MOST_LOAD_SHARE = 0.97, "1", chosen;
+    /// A link's own swing, under all of the inertia, that a recording can show: from this many a trial, rad.
+    SLOWEST_SWING = 30.0, "rad", chosen;
+    /// Band in which a missing force is looked for even where the nominal law leaves nothing, Hz.
+    LOWEST_BAND_HZ = 5.0, "Hz", chosen;
+    /// Deviations from which a block is pushed from outside: the regressors are a rough model, and normal errors reach six once in 10^9.
+    FAR_FROM_REGRESSION = 6.0, "deviations", derived;
+    /// Share of the squares left by the robust fit that outside stretches have to hold: less is a tail and no event.
+    LEAST_OUTSIDE_SHARE = 0.5, "1", chosen;
+    /// Share of the time that they may last: beyond it they are what usually happens.
+    MOST_OUTSIDE_TIME = 0.4, "1", chosen;
 }
 
 /// Fewest rows of a block.

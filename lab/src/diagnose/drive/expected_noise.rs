@@ -5,9 +5,10 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::filter::innovations;
-use super::fit::{Data, Fit};
+use super::fit::Fit;
 use super::held_out::rms;
 use super::law::DriveLaw;
+use super::likelihood::Data;
 use super::model::index;
 use super::noise::{Noise, robust_white_variance, white_variance};
 use super::trial::DriveTrial;

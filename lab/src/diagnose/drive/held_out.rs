@@ -1,8 +1,11 @@
 //! What a model leaves of rows that its values were not fitted to.
 
-use super::fit::{Data, Fit, search_noise, search_values};
+use super::fit::Fit;
+use super::levenberg_marquardt::search_values;
+use super::likelihood::Data;
 use super::missing_force::missing_force;
 use super::noise::Noise;
+use super::noise_search::search_noise;
 use super::trial::DriveTrial;
 
 /// Two halves of the recordings: every other trial, or the halves of a single one. Each is fitted once and judged once.

@@ -1,7 +1,9 @@
 //! 95 % intervals of a fitted drive: from the curvature of the likelihood, and from leaving out stretches of the recordings.
 
-use super::fit::{Data, Fit};
-use super::term::Step;
+use super::fit::Fit;
+use super::likelihood::Data;
+use super::linearisation::Linearisation;
+use super::range::Step;
 use crate::diagnose::interval::{Clusters, Intervals, spread_over_own_width};
 use crate::diagnose::jackknife::stretch_of_rows;
 
@@ -13,7 +15,8 @@ pub fn intervals(data: &Data<'_>, fit: &Fit) -> Intervals {
     let counts: Vec<Vec<bool>> = data.scored_rows().map(|rows| vec![true; rows]).collect();
     let stretch = stretch_of_rows(&counts);
     let rows = Clusters { stretch: &stretch, place: &[] };
-    let found = spread_over_own_width(ranges.len(), rows, |apart| data.linearised(fit, apart));
+    let at = Linearisation::of(data, &fit.model, &fit.values, &fit.noise);
+    let found = spread_over_own_width(ranges.len(), rows, |apart| at.over_width(&fit.values, apart));
     let each = fit.values.iter().enumerate().map(|(at, value)| {
         let range = &ranges[at];
         let steps = found.half_widths[at].hypot(found.remaining[at]);

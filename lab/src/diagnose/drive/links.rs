@@ -6,10 +6,14 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::fit::{Data, Fit, search_noise, search_values};
+use super::fit::Fit;
 use super::law::Side;
+use super::levenberg_marquardt::search_values;
+use super::likelihood::Data;
 use super::model::index;
-use super::term::{Scales, Term};
+use super::noise_search::search_noise;
+use super::scales::Scales;
+use super::term::Term;
 use super::trial::DriveTrial;
 
 /// Rows of the stretch on which starts are compared.

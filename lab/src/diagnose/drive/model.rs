@@ -1,7 +1,10 @@
 //! A model of the drive: its terms, and all values in one vector.
 
+use super::criteria::INERTIA_FACTOR;
 use super::law::DriveLaw;
-use super::term::{Range, Scales, Term};
+use super::range::Range;
+use super::scales::Scales;
+use super::term::Term;
 
 /// Terms beyond the nominal ones; the values are inertia, viscous friction, delay of the effort, then those of each term.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,10 +27,6 @@ pub mod index {
 
 /// How many values are nominal.
 pub const NOMINAL: usize = 3;
-
-/// Factor between the rig file's inertia and one that is still believed to be this drive's. Chosen: without a bound a law that lacks
-/// a weight explains a pendulum by an inertia that hardly moves.
-const INERTIA_FACTOR: f64 = 5.0;
 
 impl Model {
     /// The ranges of all values.

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use super::fit::Fit;
 use super::law::Side;
 use super::model::index;
-use super::term::{Scales, Term};
+use super::scales::Scales;
+use super::term::Term;
 use crate::effects::{Effect, Resolved, find};
 
 /// An effect of the list with its values and their 95 % intervals.
@@ -98,7 +99,7 @@ mod tests {
     use super::super::model::Model;
     use super::super::noise::Noise;
     use super::*;
-    use crate::diagnose::drive::fit::Ended;
+    use crate::diagnose::drive::levenberg_marquardt::Ended;
     use crate::diagnose::drive::testing::SCALES;
 
     /// The stiffness of a play's flanks is fitted like its gap: an interval without width would be a claim that nothing backs.

@@ -1,13 +1,17 @@
 //! The law that a rig file states of its drive, and its refitted values.
 
 use super::candidates::building_up;
-use super::fit::{Data, Effort, Ended, Fit, fit};
+use super::criteria::{LATEST_ROWS, LATEST_S, LOWEST_BAND_HZ};
+use super::fit::{Effort, Fit, fit};
 use super::held_out::{missing_forces, rms};
 use super::law::Side;
+use super::levenberg_marquardt::Ended;
+use super::likelihood::Data;
 use super::model::{Model, index};
 use super::named::known;
 use super::noise::Noise;
-use super::term::{Scales, Term};
+use super::scales::Scales;
+use super::term::Term;
 use super::trial::DriveTrial;
 use crate::effects::Resolved;
 
@@ -49,7 +53,7 @@ pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Ve
     let variance = encoder_variance(trials, &scales);
     let data = Data { trials, least_encoder_variance: 0.3 * variance };
     let (model, effects) = law_of(trials, rig, scales);
-    let band = LOWEST_BAND_HZ.min(0.1 / scales.period_s);
+    let band = LOWEST_BAND_HZ.value().min(0.1 / scales.period_s);
     let noise =
         Noise { ln_disturbance: 0.0, ln_encoder: variance.ln() }.with_crossing(band, scales.period_s, rig.inertia);
     let under = |rows: f64| {
@@ -59,9 +63,6 @@ pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Ve
     };
     DELAY_STARTS.iter().map(|rows| under(*rows)).min_by(|a, b| rms(a).total_cmp(&rms(b)))
 }
-
-/// Band in which a missing force is looked for even where the nominal law leaves nothing, Hz.
-pub const LOWEST_BAND_HZ: f64 = 5.0;
 
 /// Sizes of `trials`; `None` where they show no motion.
 #[must_use]
@@ -114,12 +115,10 @@ pub fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
 /// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
 const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
 
-/// Latest effort that counts as a late recording, in rows and in seconds: a fieldbus takes some cycles.
-const LATEST_ROWS: f64 = 20.0;
-const LATEST_S: f64 = 0.02;
-
+/// Latest effort that counts as a late recording, s.
 fn latest_effort_s(period_s: f64) -> f64 {
-    (LATEST_ROWS * period_s).max(LATEST_S).min(3.0 * LATEST_ROWS * period_s)
+    let of_rows = LATEST_ROWS * period_s;
+    of_rows.max(LATEST_S.value()).min(3.0 * of_rows)
 }
 
 /// `nominal` with an effort that acts within a recorded row of its own, and the same with a first-order lag, where the effort is later

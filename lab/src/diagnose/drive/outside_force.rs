@@ -10,10 +10,11 @@ use rand::SeedableRng as _;
 use rand::seq::index::sample;
 use rand_chacha::ChaCha12Rng;
 
+use super::criteria::{FAR_FROM_REGRESSION, LEAST_OUTSIDE_SHARE, MOST_OUTSIDE_TIME};
 use super::input::Inputs;
 use super::law::DriveLaw;
 use super::median::median;
-use super::term::Scales;
+use super::scales::Scales;
 use super::trial::DriveTrial;
 
 /// A stretch of a trial.
@@ -33,17 +34,8 @@ const BLOCK_S: f64 = 0.1;
 /// Fewest blocks for each regressor.
 const LEAST_BLOCKS_PER_VALUE: usize = 10;
 
-/// Deviations from which a block is outside: the regressors are a rough model, and normal errors reach six once in 10^9.
-const FAR: f64 = 6.0;
-
 /// Blocks that are left out on either side: the missing force is smoothed.
 const MARGIN: usize = 2;
-
-/// Share of the squares left by the robust fit that outside stretches have to hold: less is a tail and no event.
-const LEAST_SHARE: f64 = 0.5;
-
-/// Share of the time that they may last: beyond it they are what usually happens.
-const MOST_TIME: f64 = 0.4;
 
 /// Random subsets that a search starts from, and steps of concentration: Rousseeuw and Van Driessen's.
 const SUBSETS: usize = 500;
@@ -76,15 +68,15 @@ pub fn outside_forces(trials: &[DriveTrial], missing: &[Vec<f64>], law: &DriveLa
     }
     let Some(residual) = trimmed_residual(&blocks) else { return Vec::new() };
     let deviation = median(residual.iter().map(|rest| rest.abs())).unwrap_or(0.0) / 0.6745;
-    let is_far: Vec<bool> = residual.iter().map(|rest| rest.abs() > FAR * deviation).collect();
+    let is_far: Vec<bool> = residual.iter().map(|rest| rest.abs() > FAR_FROM_REGRESSION * deviation).collect();
     let squares = |wanted: bool| -> f64 {
         residual.iter().zip(&is_far).filter(|(_, far)| **far || !wanted).map(|(rest, _)| rest * rest).sum()
     };
     let stretches = stretches(&blocks, &is_far);
     let time = |trial: &DriveTrial| trial.duration_s();
     let outside: f64 = stretches.iter().map(|stretch| stretch.end_s - stretch.start_s).sum();
-    let is_event =
-        squares(true) > LEAST_SHARE * squares(false) && outside < MOST_TIME * trials.iter().map(time).sum::<f64>();
+    let is_event = squares(true) > LEAST_OUTSIDE_SHARE * squares(false)
+        && outside < MOST_OUTSIDE_TIME * trials.iter().map(time).sum::<f64>();
     if is_event { stretches } else { Vec::new() }
 }
 

@@ -6,11 +6,13 @@ use super::criteria::{
     LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, MOST_LEFT_OF_MOVED, MOST_OF_THE_REST, NEGLIGIBLE_PART,
 };
 use super::filter::innovations;
-use super::fit::{Data, Effort, Fit, fit};
+use super::fit::{Effort, Fit, fit};
 use super::law::Side;
+use super::likelihood::Data;
 use super::links;
 use super::model::Model;
-use super::term::{Scales, Term};
+use super::scales::Scales;
+use super::term::Term;
 use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
@@ -74,7 +76,7 @@ impl Search<'_> {
         let taken = (power(less) - power(more)).max(0.0);
         let all = self.unexplained(&self.nominal).min(self.scales.effort);
         let block = ((BLOCK_S / self.scales.period_s) as usize).max(BLOCK_ROWS);
-        let rows = [more, less].map(|fit| self.data.row_log_likelihoods(fit));
+        let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
         Worth {
             share: taken / power(less).max(f64::MIN_POSITIVE),
             part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),

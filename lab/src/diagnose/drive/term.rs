@@ -1,6 +1,11 @@
 //! What a model of the drive can hold beyond mass and viscous friction, and the values that each term brings.
 
+use super::criteria::{
+    LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT, MOST_LOAD_SHARE, SLOWEST_SWING,
+};
 use super::law::{Along, DriveLaw, FrictionCourse, Link, Periodic, PositionCurve, Side};
+use super::range::{Prior, Range};
+use super::scales::Scales;
 
 /// A term with its law.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,163 +64,17 @@ pub enum Term {
     },
 }
 
-/// The range of a value in a search, and how a step along it is counted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
-    /// Least value.
-    pub low: f64,
-    /// Greatest value.
-    pub high: f64,
-    /// A step of one: a factor of e, or so much.
-    pub step: Step,
-    /// What is known of it beforehand, where something is.
-    pub prior: Option<Prior>,
-}
-
-/// A value that is known beforehand: a normal density.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prior {
-    /// Its mean.
-    pub mean: f64,
-    /// Its standard deviation.
-    pub deviation: f64,
-}
-
-/// How a step along a value is counted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step {
-    /// By factors.
-    Relative,
-    /// By this much.
-    Absolute(f64),
-}
-
-impl Range {
-    /// Between two positive values, stepped by factors.
-    #[must_use]
-    pub const fn relative(low: f64, high: f64) -> Self {
-        Self { low, high, step: Step::Relative, prior: None }
-    }
-
-    /// Between two values, stepped by `size`.
-    #[must_use]
-    pub const fn absolute(low: f64, high: f64, size: f64) -> Self {
-        Self { low, high, step: Step::Absolute(size), prior: None }
-    }
-
-    /// The same with what is known of the value beforehand.
-    #[must_use]
-    pub const fn known(self, prior: Prior) -> Self {
-        Self { prior: Some(prior), ..self }
-    }
-
-    /// ln of the prior density at `value`, but for a constant, nats.
-    #[must_use]
-    pub fn ln_prior(&self, value: f64) -> f64 {
-        self.prior.map_or(0.0, |prior| -0.5 * ((value - prior.mean) / prior.deviation).powi(2))
-    }
-
-    /// `value` after `steps`, not bounded.
-    #[must_use]
-    pub fn moved(&self, value: f64, steps: f64) -> f64 {
-        match self.step {
-            Step::Relative => value * steps.exp(),
-            Step::Absolute(size) => value + steps * size,
-        }
-    }
-
-    /// Steps from `start` to `end`.
-    #[must_use]
-    pub fn steps_between(&self, start: f64, end: f64) -> f64 {
-        match self.step {
-            Step::Relative => (end / start).ln(),
-            Step::Absolute(size) => (end - start) / size,
-        }
-    }
-
-    /// d value / d steps.
-    #[must_use]
-    pub fn slope(&self, value: f64) -> f64 {
-        match self.step {
-            Step::Relative => value,
-            Step::Absolute(size) => size,
-        }
-    }
-
-    /// Whether `value` lies at an end: what is found there is where the search ended, not what the recording shows.
-    #[must_use]
-    pub fn is_at_end(&self, value: f64) -> bool {
-        const NEAR: f64 = 0.02;
-        match self.step {
-            Step::Relative => value < self.low * (1.0 + NEAR) || value > self.high / (1.0 + NEAR),
-            Step::Absolute(size) => value <= self.low + 1e-9 * size || value >= self.high - 1e-9 * size,
-        }
-    }
-}
-
-/// Sizes of the recordings, in which ranges and starts are stated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scales {
-    /// Standard deviation of the effort, N or N m.
-    pub effort: f64,
-    /// Greatest effort, N or N m.
-    pub peak_effort: f64,
-    /// Greatest speed over some rows, m/s or rad/s.
-    pub speed: f64,
-    /// From the least to the greatest position, m or rad.
-    pub travel: f64,
-    /// Least position.
-    pub lowest: f64,
-    /// Median time between encoder rows, s.
-    pub period_s: f64,
-    /// The latest effort that is a late recording and no physics, s.
-    pub latest_effort_s: f64,
-    /// Longest trial, s.
-    pub duration_s: f64,
-    /// Inertia of the rig file.
-    pub inertia: f64,
-    /// Viscous friction of the rig file.
-    pub viscous: f64,
-    /// Encoder's step, m or rad.
-    pub resolution: f64,
-    /// Whether positions are angles.
-    pub is_rotary: bool,
-}
-
-impl Scales {
-    /// Density of the disturbance that a search starts from, N^2 s: a tenth of the effort, new in each row.
-    #[must_use]
-    pub fn starting_density(&self) -> f64 {
-        1e-2 * self.effort.powi(2) * self.period_s
-    }
-}
-
 /// Share of the effort that a force steps by in a search.
 const FORCE_STEP: f64 = 0.05;
 
-/// Exponents of the speed that are told from dry and from viscous friction.
-const SUBLINEAR_EXPONENTS: (f64, f64) = (0.15, 0.9);
-
-/// Ways over which dry friction can build up, over the travel: what bends a fiftieth of the travel before it slides is a spring, and what
-/// bends a millionth is rigid.
+/// Shortest way over which a search lets dry friction build up, over the travel: what bends a millionth is rigid.
 const SHORTEST_PRESLIDING: f64 = 1e-6;
-const LONGEST_PRESLIDING: f64 = 0.02;
-
-/// Shares of the inertia that a load beyond a link can have.
-const LOAD_SHARES: (f64, f64) = (0.2, 0.97);
-
-/// A link's own swing, under all of the inertia, that a recording can show: from this many a trial, rad.
-const SLOWEST_SWING: f64 = 30.0;
 
 /// Longest pitch of a ripple that turns: two a turn.
 const LONGEST_PITCH_RAD: f64 = std::f64::consts::PI;
 
-/// Standard deviation of the factor by which the load of a rigid-body model is wrong, and the largest error that is still one of its
-/// values. Chosen: on the arms whose load was at hand (masses from drawings, a payload that is known to a third) the closest factors were
-/// 0.92 to 0.96. A load that is off by more is another load, which is physics. Where the load moves with the acceleration, as that of an
-/// arm does, a wider range lets factor and inertia stand for each other.
-const LOAD_DEVIATION: f64 = 0.05;
-const WORST_LOAD: f64 = 3.0 * LOAD_DEVIATION;
+/// Largest error of the factor of a load, in its deviations, that is still one of its values.
+const WORST_LOAD: f64 = 3.0;
 
 impl Term {
     /// Name of the effect, as the contract has it.
@@ -279,7 +138,7 @@ impl Term {
         let fastest = 4.0 / scales.period_s;
         let stiffness = Range::relative(scales.inertia * swing * swing, scales.inertia * fastest * fastest);
         let damping = Range::relative(1e-2 * scales.inertia / scales.duration_s, scales.inertia / scales.period_s);
-        let share = Range::absolute(LOAD_SHARES.0, LOAD_SHARES.1, 0.1);
+        let share = Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1);
         let friction_share = Range::absolute(0.0, 1.0, 0.1);
         match self {
             Self::Coulomb => vec![positive],
@@ -287,7 +146,7 @@ impl Term {
                 vec![positive, positive, Range::relative(1e-3 * scales.speed, 0.5 * scales.speed)]
             }
             Self::Sublinear => {
-                vec![positive, Range::absolute(SUBLINEAR_EXPONENTS.0, SUBLINEAR_EXPONENTS.1, 0.1)]
+                vec![positive, Range::absolute(LEAST_EXPONENT.value(), MOST_EXPONENT.value(), 0.1)]
             }
             Self::Presliding => {
                 vec![Range::relative(SHORTEST_PRESLIDING * scales.travel, LONGEST_PRESLIDING * scales.travel)]
@@ -315,10 +174,12 @@ impl Term {
             Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],
             Self::ForceDelay => vec![Range::absolute(-2.0 * scales.period_s, 0.05, scales.period_s)],
             Self::ToolInertia => vec![Range::absolute(0.0, 0.8 * scales.inertia, 0.02 * scales.inertia)],
-            Self::LoadScale => vec![
-                Range::absolute(1.0 - WORST_LOAD, 1.0 + WORST_LOAD, 0.1 * LOAD_DEVIATION)
-                    .known(Prior { mean: 1.0, deviation: LOAD_DEVIATION }),
-            ],
+            Self::LoadScale => {
+                let deviation = LOAD_DEVIATION.value();
+                let worst = WORST_LOAD * deviation;
+                let range = Range::absolute(1.0 - worst, 1.0 + worst, 0.1 * deviation);
+                vec![range.known(Prior { mean: 1.0, deviation })]
+            }
             Self::FrictionCourse { count, .. } => vec![Range::absolute(-1.0, f64::INFINITY, 0.1); *count],
             Self::Curve { count, .. } => vec![any; *count],
         }

@@ -4,7 +4,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::term::Scales;
+use super::scales::Scales;
 use super::trial::DriveTrial;
 
 /// Sizes of a recording of [`TestDrive::PLAIN`], by and large.

@@ -1,0 +1,273 @@
+//! From trials to the law of their drive.
+
+use super::criteria::LOWEST_BAND_HZ;
+use super::fit::Fit;
+use super::judgement::judged;
+use super::law::{DriveLaw, Side};
+use super::likelihood::Data;
+use super::model::index;
+use super::nominal::{NominalDrive, encoder_variance, missing_under, nominal_fit, punctual_and_lagged, scales};
+use super::outcome::Outcome;
+use super::outside_force::outside_forces;
+use super::selection::Search;
+use super::trial::DriveTrial;
+use crate::diagnose::verdict::Verdict;
+
+/// Identifies the drive of `trials`; `None` where they show no motion or are too short. Where no law does and a force from outside comes
+/// and goes, the law of the rest is looked for.
+#[must_use]
+pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
+    let first = identify_as_they_are(trials, rig, seed, say)?;
+    if !matches!(first.verdict, Verdict::Unknown | Verdict::PartlyExplained) {
+        return Some(first);
+    }
+    let law = DriveLaw::nominal(rig.inertia, rig.viscous, first.chosen.values[index::DELAY]);
+    let missing = missing_under(&first.trials, rig)?;
+    let stretches = outside_forces(&first.trials, &missing, &law, &first.chosen.model.scales);
+    if stretches.is_empty() {
+        return Some(first);
+    }
+    say("the drive: without the stretches in which something else pushes");
+    let quiet = first.trials.iter().enumerate().map(|(number, trial)| {
+        let own = stretches.iter().filter(|stretch| stretch.trial == number);
+        trial.without(&own.map(|stretch| [stretch.start_s, stretch.end_s]).collect::<Vec<_>>())
+    });
+    match identify_as_they_are(quiet.collect(), rig, seed, say) {
+        Some(second) if !second.named.is_empty() => {
+            Some(Outcome { verdict: Verdict::PartlyExplained, outside_forces: stretches, ..second })
+        }
+        _ => Some(first),
+    }
+}
+
+/// ln of the likelihood of `trials` under the refitted nominal law, nats; `None` where they show no motion.
+#[must_use]
+pub fn nominal_likelihood(trials: &[DriveTrial], rig: &NominalDrive) -> Option<f64> {
+    let scales = scales(trials, rig)?;
+    let variance = encoder_variance(trials, &scales);
+    let data = Data { trials, least_encoder_variance: 0.3 * variance };
+    Some(nominal_fit(&data, rig, scales, variance)?.log_likelihood)
+}
+
+fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
+    let scales = scales(&trials, rig)?;
+    let encoder_variance = encoder_variance(&trials, &scales);
+    let data = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
+    say("the drive: nominal values");
+    let nominal = nominal_fit(&data, rig, scales, encoder_variance)?;
+    // A recording may be late by some rows. Where a lag of the drive is worth its value beside a punctual recording, it is the lag.
+    let lag = punctual_and_lagged(&data, rig, &nominal, encoder_variance).and_then(|[punctual, lagged]| {
+        // It was found already: however little of the effort it is, it is looked for.
+        let search = Search { is_asked: true, ..search_from(data, rig, punctual) };
+        search.is_worth(&lagged, &search.nominal).then_some(search)
+    });
+    let search = lag.unwrap_or_else(|| search_from(data, rig, nominal));
+    let chosen = search.run(say);
+    say("the drive: what is left");
+    let mut outcome = judged(&search, chosen, seed);
+    outcome.trials.clone_from(&trials);
+    Some(outcome)
+}
+
+fn search_from<'a>(data: Data<'a>, rig: &NominalDrive, nominal: Fit) -> Search<'a> {
+    let scales = nominal.model.scales;
+    let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
+    let band_hz = crossing.clamp(LOWEST_BAND_HZ.value().min(0.1 / scales.period_s), 0.4 / scales.period_s);
+    let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
+    Search { data, scales, nominal, band_hz, sides, is_asked: false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::drive::held_out::rms;
+    use crate::diagnose::drive::testing::{TestDrive, TestLink};
+
+    fn nominal(inertia: f64, viscous: f64) -> NominalDrive {
+        NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() }
+    }
+
+    fn identified(drive: &TestDrive, inertia: f64, viscous: f64, seed: u64) -> Outcome {
+        let trials = vec![drive.trial(6.0, seed), drive.trial(6.0, seed + 1)];
+        identify(trials, &nominal(inertia, viscous), 1, &|_| {}).expect("a drive that moves")
+    }
+
+    #[test]
+    fn a_drive_with_nothing_missing_is_left_alone_and_its_noise_is_known() {
+        let outcome = identified(&TestDrive::PLAIN, 0.8, 4.0, 11);
+        assert_eq!(outcome.verdict, Verdict::NoMismatch);
+        assert!(outcome.named.is_empty() && outcome.alternatives.is_empty());
+        let left = rms(&outcome.missing[1]);
+        // Both are root mean squares of 12 000 rows in a band of some hertz: a tenth is three deviations.
+        assert!((left / outcome.expected_noise - 1.0).abs() < 0.2, "{left} {}", outcome.expected_noise);
+    }
+
+    #[test]
+    fn noise_of_the_recorded_effort_is_no_physics() {
+        let outcome = identified(&TestDrive { effort_noise: 0.3, ..TestDrive::PLAIN }, 0.8, 4.0, 51);
+        assert_eq!(outcome.verdict, Verdict::NoMismatch);
+        // It is there: more than encoder and force sensor leave.
+        assert!(rms(&outcome.missing[1]) > 1.5 * outcome.expected_noise);
+    }
+
+    #[test]
+    fn a_lag_of_two_rows_is_no_late_recording() {
+        let outcome = identified(&TestDrive { effort_lag_s: 2e-3, ..TestDrive::PLAIN }, 0.75, 5.0, 81);
+        assert_eq!(outcome.chosen.model.names(), ["effort_lag"]);
+        let lag = outcome.chosen.values[outcome.chosen.model.values_of(0).start];
+        assert!((lag / 2e-3 - 1.0).abs() < 0.02, "{lag}");
+    }
+
+    #[test]
+    fn a_recording_that_is_late_by_part_of_a_row_is_no_lag() {
+        let outcome = identified(&TestDrive { effort_late_s: 0.6e-3, ..TestDrive::PLAIN }, 0.8, 4.0, 91);
+        assert_eq!(outcome.verdict, Verdict::NoMismatch);
+        // Half a step of the test's own simulation, which updates the velocity first, is 20 us.
+        assert!((outcome.chosen.values[index::DELAY] - 0.6e-3).abs() < 0.025e-3);
+    }
+
+    #[test]
+    fn a_play_of_two_hundred_encoder_steps_is_named_with_its_gap() {
+        let link = TestLink { stiffness: 4e4, damping: 30.0, play: 2e-3, load_share: 0.5, friction_share: 0.0 };
+        let outcome = identified(&TestDrive { link: Some(link), ..TestDrive::PLAIN }, 0.75, 5.0, 61);
+        assert_eq!(outcome.chosen.model.names(), ["backlash"]);
+        let gap = outcome.chosen.values[outcome.chosen.model.values_of(0).start + 3];
+        // A tenth of the gap is twenty steps of the encoder.
+        assert!((gap / 2e-3 - 1.0).abs() < 0.1, "{gap}");
+        // What it leaves is what the encoder leaves: a link is measured as a rigid law is.
+        let left = rms(&outcome.missing[2]);
+        assert!((left / outcome.expected_noise - 1.0).abs() < 0.3, "{left} {}", outcome.expected_noise);
+    }
+
+    /// A gear that swings at 25 Hz on its flanks: a search with a louder disturbance ends at another gap, or in a lag of the effort.
+    #[test]
+    fn a_play_with_soft_flanks_is_named_with_its_gap_and_its_stiffness() {
+        let link = TestLink { stiffness: 4700.0, damping: 2.2, play: 3e-3, load_share: 0.55, friction_share: 0.4 };
+        let outcome = identified(&TestDrive { link: Some(link), ..TestDrive::PLAIN }, 0.82, 4.3, 63);
+        assert_eq!(outcome.chosen.model.names(), ["backlash"]);
+        let own = outcome.chosen.model.values_of(0);
+        let values = &outcome.chosen.values[own];
+        // Three hundred times the encoder's step, seen some forty times: a hundredth is far beyond its noise.
+        assert!((values[3] / 3e-3 - 1.0).abs() < 0.01 && (values[0] / 4700.0 - 1.0).abs() < 0.02, "{values:?}");
+    }
+
+    #[test]
+    fn a_weak_link_is_told_with_the_friction_of_its_load() {
+        let link = TestLink { stiffness: 1200.0, damping: 1.3, play: 0.0, load_share: 0.4, friction_share: 0.7 };
+        let outcome = identified(&TestDrive { link: Some(link), ..TestDrive::PLAIN }, 0.75, 5.0, 62);
+        assert_eq!(outcome.chosen.model.names(), ["transmission_compliance"]);
+        let own = outcome.chosen.model.values_of(0);
+        let (values, ends) = (&outcome.chosen.values[own.clone()], &outcome.intervals[own]);
+        for (at, truth) in [(0, 1200.0), (2, 0.4), (3, 0.7)] {
+            // The test's own simulation, in 25 steps a row that update the velocity first, is late by half of one: a thousandth.
+            let [low, high] = ends[at];
+            assert!(low < 1.002 * truth && truth < 1.002 * high, "{at}: {values:?} {ends:?}");
+            assert!((values[at] / truth - 1.0).abs() < 0.05, "{at}: {values:?}");
+        }
+    }
+
+    #[test]
+    fn friction_and_a_link_that_hide_each_other_are_named_together() {
+        let link = TestLink { stiffness: 1200.0, damping: 1.3, play: 0.0, load_share: 0.5, friction_share: 0.0 };
+        let outcome = identified(&TestDrive { coulomb: 0.4, link: Some(link), ..TestDrive::PLAIN }, 0.75, 5.0, 71);
+        assert_eq!(outcome.chosen.model.names(), ["coulomb_friction", "transmission_compliance"]);
+    }
+
+    #[test]
+    fn wrong_values_are_no_physics() {
+        let outcome = identified(&TestDrive::PLAIN, 1.0, 7.0, 21);
+        assert_eq!(outcome.verdict, Verdict::Parameters);
+        assert!(outcome.named.is_empty());
+        assert!((outcome.chosen.values[index::INERTIA] - 0.8).abs() < 2e-3);
+        assert!((outcome.chosen.values[index::VISCOUS] - 4.0).abs() < 2e-2);
+    }
+
+    /// What a rigid-body model explains, of which the effort has to bear `factor`.
+    fn loaded(drive: &TestDrive, factor: f64, seed: u64) -> DriveTrial {
+        let mut trial = drive.trial(6.0, seed);
+        let load: Vec<f64> = trial.source_time.iter().map(|time| 2.0 * (3.0 * time + seed as f64).sin()).collect();
+        trial.effort.iter_mut().zip(&load).for_each(|(effort, load)| *effort += factor * load);
+        DriveTrial { load: Some(load), ..trial }
+    }
+
+    #[test]
+    fn a_load_that_is_off_by_some_hundredths_is_a_value_and_no_physics() {
+        let identified = |drive: &TestDrive, factor: f64| {
+            identify(vec![loaded(drive, factor, 1), loaded(drive, factor, 2)], &nominal(0.8, 4.0), 1, &|_| {})
+                .expect("it moves")
+        };
+        let scale = |outcome: &Outcome| outcome.chosen.values[outcome.chosen.model.load_scale().expect("a load")];
+        let off = identified(&TestDrive::PLAIN, 1.06);
+        assert_eq!((off.verdict, off.named.len()), (Verdict::Parameters, 0));
+        // The load of the test is held from row to row and the model's is straight: half a row of 3 rad/s, 3e-3 N of 2 N.
+        assert!((scale(&off) - 1.06).abs() < 3e-3, "{}", scale(&off));
+        let right = identified(&TestDrive { coulomb: 0.4, ..TestDrive::PLAIN }, 1.0);
+        assert_eq!(right.chosen.model.names(), ["coulomb_friction"]);
+        assert!((scale(&right) - 1.0).abs() < 3e-3, "{}", scale(&right));
+    }
+
+    #[test]
+    fn a_load_that_never_acts_leaves_its_factor_where_it_is_believed() {
+        let still = |trial: DriveTrial| DriveTrial { load: Some(vec![0.0; trial.effort.len()]), ..trial };
+        let trials = [1, 2].map(|seed| still(TestDrive::PLAIN.trial(6.0, seed)));
+        let outcome = identify(trials.to_vec(), &nominal(0.8, 4.0), 1, &|_| {}).expect("it moves");
+        let at = outcome.chosen.model.load_scale().expect("a load");
+        assert_eq!((outcome.verdict, outcome.chosen.values[at]), (Verdict::NoMismatch, 1.0));
+        // Nothing was seen of it: all that is believed of it stays possible.
+        assert_eq!(outcome.intervals[at], [0.85, 1.15]);
+    }
+
+    #[test]
+    fn dry_friction_is_named_alone_with_its_level_and_an_interval_that_holds_it() {
+        let outcome = identified(&TestDrive { coulomb: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 31);
+        assert_eq!(outcome.verdict, Verdict::Explained);
+        assert_eq!(outcome.chosen.model.names(), ["coulomb_friction"]);
+        let at = outcome.chosen.model.values_of(0).start;
+        let (level, [low, high]) = (outcome.chosen.values[at], outcome.intervals[at]);
+        assert!((level - 0.4).abs() < 0.01, "{level}");
+        // The interval is widened by what the halves disagree about: it holds the truth and is no wider than a twentieth.
+        assert!(low - 0.004 <= 0.4 && 0.4 <= high + 0.004 && high - low < 0.04, "{low} {high}");
+        let [_, refitted, improved] = [0, 1, 2].map(|of| rms(&outcome.missing[of]));
+        assert!(improved < 1.3 * outcome.expected_noise && refitted > 1.5 * improved, "{refitted} {improved}");
+    }
+
+    /// A bristle of thirty encoder steps: with friction that is there at once three times what the encoder leaves is left.
+    #[test]
+    fn friction_that_builds_up_over_a_way_is_dry_friction_and_nothing_else() {
+        let outcome = identified(&TestDrive { coulomb: 0.4, presliding: 1.5e-4, ..TestDrive::PLAIN }, 0.75, 5.0, 33);
+        assert_eq!((outcome.verdict, outcome.chosen.model.names()), (Verdict::Explained, vec!["coulomb_friction"]));
+        let level = outcome.chosen.values[outcome.chosen.model.values_of(0).start];
+        // Four chords follow the exponential to a thirtieth of the friction, on the way of a turn alone.
+        assert!((level - 0.4).abs() < 0.01, "{level}");
+        let left = rms(&outcome.missing[2]);
+        assert!(left < 1.3 * outcome.expected_noise, "{left} {}", outcome.expected_noise);
+    }
+
+    #[test]
+    fn friction_by_the_root_of_the_speed_stands_for_itself() {
+        let outcome = identified(&TestDrive { root: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 34);
+        assert_eq!(outcome.chosen.model.names(), ["sublinear_friction"]);
+        let own = outcome.chosen.model.values_of(0);
+        assert!((outcome.chosen.values[own.start + 1] - 0.5).abs() < 0.03, "{:?}", outcome.chosen.values);
+    }
+
+    #[test]
+    fn a_white_force_is_unknown_and_nothing_is_named_for_it() {
+        let outcome = identified(&TestDrive { disturbance: 0.05, ..TestDrive::PLAIN }, 0.8, 4.0, 41);
+        assert!(outcome.named.is_empty(), "{:?}", outcome.chosen.model.names());
+        assert_eq!(outcome.verdict, Verdict::Unknown);
+    }
+
+    #[test]
+    fn recordings_that_do_not_move_say_nothing() {
+        let still = DriveTrial::new(
+            "still.csv".to_owned(),
+            (0..500).map(|row| 1e-3 * f64::from(row)).collect(),
+            &[0.1; 500],
+            vec![1.0; 500],
+            None,
+            1,
+        );
+        assert!(identify(vec![still], &nominal(0.8, 4.0), 1, &|_| {}).is_none());
+    }
+}
