@@ -1,5 +1,6 @@
 //! Sizes of the recordings, which searches start from and limits are stated in.
 
+use super::criteria::NOTABLE_POWER;
 use super::trial::ContactTrial;
 use crate::effects::ExcitationStats;
 
@@ -12,7 +13,7 @@ pub struct Scales {
     pub speed: f64,
     /// Range of the force.
     pub force: f64,
-    /// Greatest reading of the force either way, less four deviations of its noise: what no range of the sensor lies below.
+    /// Greatest reading of the force either way, less what its noise adds at the most: what no range of the sensor lies below.
     pub reached_force: f64,
     /// Least and greatest position.
     pub positions: [f64; 2],
@@ -119,9 +120,11 @@ impl Scales {
     }
 }
 
+/// The greatest of `n` normal errors is sqrt(2 ln n) deviations (R. A. Fisher, L. H. C. Tippett, *Proc. Camb. Phil. Soc.* 24, 1928, 180),
+/// and the deviation is known to within [`NOTABLE_POWER`].
 fn reached_force(trial: &ContactTrial) -> f64 {
     let greatest = trial.force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
-    greatest - 4.0 * trial.force_variance.sqrt()
+    greatest - (2.0 * (trial.len() as f64).ln() * NOTABLE_POWER * trial.force_variance).sqrt()
 }
 
 /// How a trial went in and out.
@@ -173,6 +176,30 @@ impl Passes {
             way_back: if span > 0.0 { back / span } else { 0.0 },
             free_span: free_rows as f64 / trial.len().max(1) as f64,
             longest_contact: longest as f64 / trial.len().max(1) as f64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha12Rng;
+    use rand_distr::{Distribution as _, Normal};
+
+    use super::super::testing::{FORCE_NOISE, TestContact};
+    use super::*;
+
+    #[test]
+    fn noise_on_top_of_a_clipped_force_is_no_force_that_was_reached() {
+        let noise = Normal::new(0.0, FORCE_NOISE).unwrap();
+        for seed in 0..20 {
+            let mut random = ChaCha12Rng::seed_from_u64(seed);
+            let mut recording = TestContact::PLAIN.recording(1);
+            // Clipped by the transducer, before what the amplifier adds.
+            recording.force = Some(recording.time.iter().map(|_| 2.0 + noise.sample(&mut random)).collect());
+            let reached = reached_force(&TestContact::seen(&recording));
+            // The greatest of 3000 errors: 3.4 deviations, and 5 once in a thousand such trials.
+            assert!(reached < 2.0 && reached > 2.0 - 3.0 * FORCE_NOISE, "seed {seed}: {reached}");
         }
     }
 }
