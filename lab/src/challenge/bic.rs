@@ -12,7 +12,8 @@ use palpate_cases::baselines::BaselineResult;
 use rayon::prelude::*;
 
 use super::case_files::{self, CaseFiles};
-use crate::diagnose::contact::fit::{Data, Effort, Fit};
+use crate::diagnose::contact::data::Data;
+use crate::diagnose::contact::fit::{Effort, Fit};
 use crate::diagnose::contact::held_out::{Folds, rms};
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::nominal::nominal_fit;

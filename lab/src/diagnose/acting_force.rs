@@ -2,7 +2,7 @@
 
 use super::contact::fit::Fit;
 use super::contact::outcome::Outcome;
-use super::contact::selection::without_term;
+use super::contact::pruning::without_term;
 use super::local_level::level;
 use super::term::Term;
 use crate::effects::Place;

@@ -1,13 +1,19 @@
 //! The contact by a model of its force: position in, force out.
 
+pub mod alternative;
 pub mod broken_line;
 pub mod circumstances;
 mod colour;
 pub mod composed;
+mod confirmation;
 pub mod criteria;
+pub mod data;
+pub mod fall;
 pub mod fit;
+mod growth;
 pub mod held_out;
 pub mod interval;
+mod judgement;
 pub mod learned;
 mod lines;
 pub mod model;
@@ -15,16 +21,23 @@ pub mod motion;
 pub mod nominal;
 pub mod outcome;
 pub mod own_values;
+mod prediction;
 pub mod prepare;
 pub mod projection;
+pub mod pruning;
+pub mod range;
 pub mod refined;
+pub mod rest;
 pub mod scales;
+pub mod search;
 pub mod seen_layers;
 pub mod selection;
+mod simplicity;
 pub mod spline;
 #[cfg(test)]
 pub mod testing;
 pub mod tones;
 pub mod trial;
 pub mod variance;
+mod weights;
 pub mod worth;

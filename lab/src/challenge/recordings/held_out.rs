@@ -7,7 +7,7 @@
 
 use anyhow::{Context as _, Result};
 
-use crate::diagnose::contact::fit::Data;
+use crate::diagnose::contact::data::Data;
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::nominal::{law_of, nominal_fit};
 use crate::diagnose::contact::prepare;

@@ -8,6 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::criteria::LEAST_PART_OF_COEFFICIENTS;
 use super::fit::Fit;
 use super::trial::ContactTrial;
 
@@ -28,9 +29,6 @@ const NORMAL_MEDIAN: f64 = 0.674_489_75;
 
 /// Coefficients that a median is taken of at the least: a deviation is known to an eighth then.
 const LEAST_COUNT: usize = 80;
-
-/// Share of all coefficients that what the tool does has to have to be asked.
-const LEAST_PART: f64 = 0.05;
 
 /// Residual, law's force, position, velocity and acceleration, the first two over the row's own deviation.
 const COLUMNS: usize = 5;
@@ -126,7 +124,7 @@ fn power_of_level(details: &[Detail]) -> Option<f64> {
     let mut least = f64::INFINITY;
     for group in 0..GROUPS {
         let own: Vec<&Detail> = details.iter().filter(|detail| detail.group == group).collect();
-        if (own.len() as f64) < LEAST_PART * details.len() as f64 {
+        if (own.len() as f64) < LEAST_PART_OF_COEFFICIENTS * details.len() as f64 {
             continue;
         }
         if own.len() < LEAST_COUNT {
@@ -170,7 +168,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fit::{Data, Effort};
+    use super::super::data::Data;
+    use super::super::fit::Effort;
     use super::super::nominal::nominal_fit;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
@@ -196,8 +195,7 @@ mod tests {
         let data = Data::new(trials);
         let nominal = nominal_fit(&data, &TestContact::nominal());
         let nominal = data.fit(&nominal.model, &nominal.values, Effort::FULL);
-        let residual: Vec<Vec<f64>> =
-            (0..trials.len()).map(|trial| data.residual(&nominal.model, &nominal.values, trial)).collect();
+        let residual = data.residuals(&nominal.model, &nominal.values);
         noise_power(trials, &nominal, &data.noise, &residual)
     }
 

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use super::fit::{Effort, Fit};
 use super::model::OwnValues;
-use super::selection::{Search, sorted_names, without_term};
+use super::pruning::without_term;
+use super::search::{Search, sorted_names};
 use crate::diagnose::term::Term;
 
 /// Laws of the spring, one of which a memory is composed with even where none was found beside it: a spring bends by the one or the other.
@@ -68,4 +69,36 @@ fn springs_under(upper: &Term) -> impl Iterator<Item = &'static str> {
     let forms = 0..upper.effect.spec().forms.len();
     let builds_on = move |spring: &str| forms.clone().any(|form| upper.effect.builds_on(form).contains(&spring));
     SPRINGS.into_iter().filter(move |spring| builds_on(spring))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::circumstances::Circumstances;
+    use super::super::data::Data;
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::TestContact;
+    use super::*;
+
+    #[test]
+    fn memory_and_spring_are_composed_from_the_spring_up() {
+        let trials = [1, 2].map(|seed| TestContact { exponent: 1.8, fading: 1.5, ..TestContact::PLAIN }.trial(seed));
+        let first = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        let data = || Data::new(&trials).weighed(&first);
+        let circumstances = Circumstances::default();
+        let search = Search { nominal: data().again(&first), data: data(), coarse: data(), circumstances };
+        let relaxation = Term { effect: crate::effects::find("stress_relaxation").unwrap(), form: 0 };
+        let model = first.model.with(relaxation);
+        let start: Vec<f64> = first.values.iter().copied().chain([100.0, 0.4]).collect();
+        let beside = search.data.fit(&model, &start, Effort::FULL);
+        let composed = search.composed(std::slice::from_ref(&beside), &mut Vec::new());
+        let least = composed.iter().min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap();
+        assert_eq!(sorted_names(&least.model), ["nonlinear_stiffness", "stress_relaxation"]);
+        // The effective weights are those of the nominal law and so a little too small: the right law leaves less than the expected one.
+        assert!(least.energy < 1.1 * search.data.expected(), "{} of {}", least.energy, search.data.expected());
+        assert!(beside.energy > 3.0 * least.energy, "{} beside {}", beside.energy, least.energy);
+        // Without its spring the memory is one beside the straight spring, with the sizes of that.
+        let at = least.model.terms.iter().position(|term| term.name() == "nonlinear_stiffness").unwrap();
+        let (model, _) = without_term(least, at);
+        assert_eq!(model.terms, [relaxation]);
+    }
 }

@@ -43,4 +43,33 @@ thresholds! { "contact";
     MOST_LEFT = 0.25, "1", derived;
     /// Factor by which refitted values have to lessen the residual before they are told as wrong.
     VALUES_MATTER = 1.05, "1", chosen;
+    /// Integrated autocorrelation times that a block of Vuong's statistic is long at the least: what two blocks share is a tenth then.
+    VUONG_BLOCK_TIMES = 3.0, "1", derived;
+    /// Squares a row, over the sensors' own, from which effects are looked for from other surfaces and along a broken line: twice the
+    /// noise's deviation, from which what is missing may have moved the surface.
+    MUCH_MISSING = 4.0, "1", chosen;
+    /// The same at which the search for more effects ends, where the sensors' noise is as stated.
+    AT_NOISE = 1.02, "1", chosen;
+    /// Deviation of a trial's own surface where it lies elsewhere, of the greatest depth.
+    SURFACE_PRIOR = 0.3, "1", chosen;
+    /// Deviation of a trial's own zero, of the greatest force.
+    ZERO_PRIOR = 0.1, "1", chosen;
+    /// Deviation of the logarithm of a trial's own factor: spots of one body differ by factors of 1.2 to 1.7.
+    SCALE_PRIOR = 0.4, "1", chosen;
+    /// Part of the greatest force that a limit of the sensor lies at, at the least.
+    LEAST_REACHED_FORCE = 0.15, "1", chosen;
+    /// Periods of a wave that the recordings hold at the least: two, less what a fit may be off by.
+    LEAST_CYCLES = 1.8, "1", chosen;
+    /// Shortest time of a memory or a lag, rows: what is quicker lies between two of them.
+    LEAST_TIME_ROWS = 2.0, "rows", derived;
+    /// Part of the force's range from which a spring's force is said to fall on the way in.
+    LEAST_FALL = 0.02, "1", chosen;
+    /// Part of the force's range that either half of a single trial has to see: a stop that lies within one block is known to one half alone.
+    SEEN_BY_BOTH = 0.8, "1", chosen;
+    /// Share of all wavelet coefficients that what the tool does has to have to be asked for the noise's power.
+    LEAST_PART_OF_COEFFICIENTS = 0.05, "1", chosen;
+    /// Share of the motion's variance that it may have at the frequency of a wave: a chirp has less at any, strokes have half.
+    LARGEST_OWN_SHARE = 0.01, "1", chosen;
+    /// Part by which a line of the spectrum may be off the frequency that it is known by: twice what mains are.
+    LINE_TOLERANCE = 0.008, "1", derived;
 }

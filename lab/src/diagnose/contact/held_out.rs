@@ -1,6 +1,8 @@
 //! What a law leaves of rows that its values were not fitted to.
 
-use super::fit::{Data, Effort, Fit};
+use super::criteria::SEEN_BY_BOTH;
+use super::data::Data;
+use super::fit::{Effort, Fit};
 use super::model::{ContactModel, index};
 
 /// Two halves of the rows: every other trial, or every other block of a single one, of which there are so many that both halves see every
@@ -21,9 +23,6 @@ pub struct HeldOut {
 /// Blocks of a single trial, the fewest and the most.
 const BLOCKS: usize = 40;
 const MOST_BLOCKS: usize = 320;
-
-/// Part of the force's range that either half of a single trial has to see: a stop that lies within one block is known to one half alone.
-const SEEN_BY_BOTH: f64 = 0.8;
 
 /// Steps of the search on a half, from the values of the whole.
 const STEPS: Effort = Effort(6);

@@ -1,6 +1,8 @@
 //! 95 % intervals of a fitted contact: from the curvature of least squares, and from leaving out stretches of the recordings.
 
-use super::fit::{Data, Fit, Rest};
+use super::data::Data;
+use super::fit::Fit;
+use super::rest::Rest;
 use crate::diagnose::interval::{Clusters, Intervals, spread};
 use crate::diagnose::jackknife::stretch_of_rows;
 

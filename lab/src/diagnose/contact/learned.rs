@@ -4,9 +4,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::broken_line::DepthProfile;
 use super::criteria::{LEAST_HELD_OUT_SHARE, NOTABLE_POWER};
-use super::fit::{Data, Fit, Rest};
+use super::data::Data;
+use super::fit::Fit;
 use super::held_out::{Folds, rms};
 use super::model::index;
+use super::rest::Rest;
 use super::spline::{Part, Spline};
 use super::trial::ContactTrial;
 use crate::diagnose::interval::NORMAL_97_5;

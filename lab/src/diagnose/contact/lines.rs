@@ -1,12 +1,12 @@
 //! Effects that are a line of the spectrum, as a tone of the mains is: told by the spectrum around it, whatever the law of the contact
 //! leaves elsewhere.
 
-use super::criteria::{LEAST_GAIN, LEAST_LINE_POWER};
+use super::criteria::{LEAST_GAIN, LEAST_LINE_POWER, LINE_TOLERANCE};
 use super::fit::{Effort, Fit};
 use super::model::index;
 use super::projection::Projection;
-use super::selection::Search;
-use super::tones::{LINE_TOLERANCE, is_on_a_line, line_nats};
+use super::search::Search;
+use super::tones::{is_on_a_line, line_nats};
 use super::trial::ContactTrial;
 use crate::diagnose::term::Term;
 

@@ -1,6 +1,7 @@
 //! The law that a rig file states of its contact, and its refitted values.
 
-use super::fit::{Data, Effort, Fit};
+use super::data::Data;
+use super::fit::{Effort, Fit};
 use super::model::{ContactModel, OwnValues, index};
 use super::scales::Scales;
 use super::trial::ContactTrial;

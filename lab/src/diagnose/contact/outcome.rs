@@ -1,37 +1,24 @@
 //! What the recordings say of a contact: the law, its evidence, what else would do, and what is left.
 
+use super::alternative::{Alternative, alternatives};
 use super::circumstances::Circumstances;
-use super::criteria::{
-    COMPARISONS, LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE,
-    LEAST_VUONG, MOST_LEFT, NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
-};
-use super::fit::{Data, Effort, Fit, Rest};
-use super::held_out::{Folds, HeldOut, rms};
+use super::confirmation::believed;
+use super::data::Data;
+use super::fit::{Effort, Fit};
+use super::held_out::{Folds, rms};
 use super::interval::intervals;
+use super::judgement::{is_notable, takes_too_little, verdict};
 use super::learned::{LearnedCurve, learned};
-use super::lines::line_beyond;
 use super::model::index;
 use super::nominal::{NominalContact, law_of, nominal_fit};
-use super::selection::{Chosen, Search, sorted_names};
+use super::rest::Rest;
+use super::search::Search;
+use super::selection::Chosen;
 use super::trial::ContactTrial;
 use crate::diagnose::evidence::NamedTerm;
-use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::diagnose::verdict::Verdict;
 use crate::recording::Recording;
 use crate::recording::assemble::interpolated;
-
-/// A set of effects that the recordings do not tell from the answer.
-#[derive(Debug, Clone)]
-pub struct Alternative {
-    /// Its effects.
-    pub names: Vec<&'static str>,
-    /// Share of the held-out mismatch that it takes.
-    pub held_out_share: f64,
-    /// What it leaves, N or N m in root mean square on held-out rows.
-    pub left: f64,
-    /// Its law.
-    pub fit: Fit,
-}
 
 /// Everything found of a contact.
 pub struct Outcome {
@@ -127,7 +114,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         named.clear();
     }
     let rest = Rest::of(data, &fit);
-    let given_residual = columns(data, &given);
+    let given_residual = data.residuals(&given.model, &given.values);
     let verdict = verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
     // Beside names that stand for the mismatch, too: what a textbook's law leaves of a real thing is no less of use for being told.
     let learned = if is_notable(search, &fit, &rest) { learned(data, &fit) } else { None };
@@ -162,149 +149,10 @@ fn as_given(search: &Search<'_>, start: &[f64]) -> Fit {
     given
 }
 
-/// The effects that unseen rows confirm, with what each takes of them.
-fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
-    let data = &search.data;
-    let expected = data.expected();
-    loop {
-        let held = folds.held_out(data, &fit);
-        let first = search.nominal.model.terms.len();
-        let without: Vec<(Fit, f64, f64)> = (first..fit.model.terms.len())
-            .map(|at| {
-                let less = search.without(&fit, at);
-                let left = folds.held_out(data, &less);
-                (less, left.energy, rms(data, &left.residual))
-            })
-            .collect();
-        let share = |left: f64| {
-            let taken = left - held.energy;
-            if taken > 0.0 { taken / (left - expected).max(taken) } else { 0.0 }
-        };
-        // A line is no part of what a law leaves.
-        let is_confirmed = |(less, left, _): &(Fit, f64, f64)| match line_beyond(&fit, less) {
-            Some(_) => left - held.energy > LEAST_LINE_POWER * expected,
-            None => share(*left) >= LEAST_HELD_OUT_SHARE,
-        };
-        let needless = (0..without.len()).filter(|nth| !is_confirmed(&without[*nth]));
-        if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
-            fit = without[nth].0.clone();
-            continue;
-        }
-        let named = without.iter().enumerate().map(|(nth, (less, left, without))| NamedTerm {
-            at: first + nth,
-            held_out_share: share(*left).clamp(0.0, 1.0),
-            p_value: (COMPARISONS * likelihood_ratio_p(search.worth(&fit, less).gain, added_values(&fit, less)))
-                .min(1.0),
-            without: *without,
-        });
-        let named = named.collect();
-        return (fit, held, named);
-    }
-}
-
-/// Values that are fitted in `more` and not in `less`.
-fn added_values(more: &Fit, less: &Fit) -> usize {
-    more.model.free_count().saturating_sub(less.model.free_count())
-}
-
-/// Alternatives that are told.
-const MOST_ALTERNATIVES: usize = 3;
-
-/// Sets that were fitted in full and are neither refused by the likelihood nor told like the answer.
-fn alternatives(
-    search: &Search<'_>,
-    folds: &Folds,
-    fit: &Fit,
-    chosen: &Chosen,
-    refitted: &HeldOut,
-) -> Vec<Alternative> {
-    let first = search.nominal.model.terms.len();
-    if fit.model.terms.len() == first {
-        return Vec::new();
-    }
-    let expected = search.data.expected();
-    let is_open = |other: &&Fit| {
-        let worth = search.worth(fit, other);
-        sorted_names(&other.model) != sorted_names(&fit.model)
-            && other.model.terms.len() <= fit.model.terms.len()
-            && (worth.gain < LEAST_GAIN || worth.vuong < LEAST_VUONG || search.is_one_law(&other.model, &fit.model))
-            && search.is_worth(other, &search.nominal)
-    };
-    let mut open: Vec<&Fit> = Vec::new();
-    for set in chosen.sets.iter().filter(is_open) {
-        if open.iter().all(|other| sorted_names(&other.model) != sorted_names(&set.model)) {
-            open.push(set);
-        }
-    }
-    let told = open.into_iter().take(MOST_ALTERNATIVES).map(|other| {
-        let unseen = folds.held_out(&search.data, other);
-        let taken = refitted.energy - unseen.energy;
-        let share = taken / (refitted.energy - expected).max(taken.abs()).max(f64::MIN_POSITIVE);
-        Alternative {
-            names: other.model.names(first),
-            held_out_share: share.clamp(0.0, 1.0),
-            left: rms(&search.data, &unseen.residual),
-            fit: other.clone(),
-        }
-    });
-    told.collect()
-}
-
-/// Whether named effects leave something notable and take less of the mismatch than they leave.
-fn takes_too_little(search: &Search<'_>, fit: &Fit, named: &[NamedTerm]) -> bool {
-    let expected = search.data.expected();
-    let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
-    let left = (fit.energy - expected).max(0.0);
-    !named.is_empty() && Rest::of(&search.data, fit).over_sensors > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
-}
-
-/// Whether what `fit` leaves, `rest`, is more than the sensors may leave, by the rows' weights and as it is told, in newtons, and a part
-/// of the force that is of interest.
-fn is_notable(search: &Search<'_>, fit: &Fit, rest: &Rest) -> bool {
-    let data = &search.data;
-    let left = fit.energy - data.expected();
-    rest.over_sensors > NOTABLE_POWER
-        && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.value().max(LEAST_PART_OF_FORCE.value())
-        && rms(data, &columns(data, fit)) > data.expected_noise()
-}
-
-/// What `fit` leaves, N or N m, a column a trial.
-fn columns(data: &Data<'_>, fit: &Fit) -> Vec<Vec<f64>> {
-    (0..data.trials.len()).map(|trial| data.residual(&fit.model, &fit.values, trial)).collect()
-}
-
-fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Verdict {
-    let data = &search.data;
-    let expected = data.expected();
-    let rest = Rest::of(data, fit);
-    let left = (fit.energy - expected).max(0.0);
-    let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
-    let is_notable = is_notable(search, fit, &rest);
-    if named.is_empty() {
-        let refitted = rms(data, &held[0].residual);
-        return if is_notable {
-            Verdict::Unknown
-        } else if given > VALUES_MATTER * refitted {
-            Verdict::Parameters
-        } else {
-            Verdict::NoMismatch
-        };
-    }
-    let is_told = 1.0 - left / all > TOLD_SHARE;
-    // Layers say where a force falls, and not what lets it fall: a column that buckles, a leaf, a magnet.
-    let falls = fit.model.fall(&fit.values).is_some() && search.nominal.model.fall(&search.nominal.values).is_none();
-    if falls || is_notable && (!is_told || rest.over_sensors > MOST_LEFT * search.nominal.energy / expected) {
-        Verdict::PartlyExplained
-    } else {
-        Verdict::Explained
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
-    use crate::diagnose::term::Term;
 
     fn found(contacts: [&TestContact; 2]) -> Outcome {
         found_at(contacts, false)
@@ -372,30 +220,7 @@ mod tests {
     }
 
     /// A memory beside a straight spring is found first; from it the search comes to the one that multiplies a bent one, to the noise.
-    #[test]
-    fn memory_and_spring_are_composed_from_the_spring_up() {
-        let trials = [1, 2].map(|seed| TestContact { exponent: 1.8, fading: 1.5, ..TestContact::PLAIN }.trial(seed));
-        let first = nominal_fit(&Data::new(&trials), &TestContact::nominal());
-        let data = || Data::new(&trials).weighed(&first);
-        let circumstances = Circumstances::default();
-        let search = Search { nominal: data().again(&first), data: data(), coarse: data(), circumstances };
-        let relaxation = Term { effect: crate::effects::find("stress_relaxation").unwrap(), form: 0 };
-        let model = first.model.with(relaxation);
-        let start: Vec<f64> = first.values.iter().copied().chain([100.0, 0.4]).collect();
-        let beside = search.data.fit(&model, &start, Effort::FULL);
-        let composed = search.composed(std::slice::from_ref(&beside), &mut Vec::new());
-        let least = composed.iter().min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap();
-        assert_eq!(sorted_names(&least.model), ["nonlinear_stiffness", "stress_relaxation"]);
-        // The effective weights are those of the nominal law and so a little too small: the right law leaves less than the expected one.
-        assert!(least.energy < 1.1 * search.data.expected(), "{} of {}", least.energy, search.data.expected());
-        assert!(beside.energy > 3.0 * least.energy, "{} beside {}", beside.energy, least.energy);
-        // Without its spring the memory is one beside the straight spring, with the sizes of that.
-        let at = least.model.terms.iter().position(|term| term.name() == "nonlinear_stiffness").unwrap();
-        let (model, _) = super::super::selection::without_term(least, at);
-        assert_eq!(model.terms, [relaxation]);
-    }
 
-    /// A memory and a loop are one force where the tool moves at one speed: the recordings here have many, and decide.
     #[test]
     fn at_one_speed_a_loop_stays_beside_a_memory_as_an_alternative() {
         let relaxing = TestContact { branch: 200.0, ..TestContact::PLAIN };
@@ -418,28 +243,7 @@ mod tests {
     }
 
     /// A bias that takes a six-hundredth of what the force varies by, which 6000 rows tell beyond doubt and nobody would call missing physics.
-    #[test]
-    fn what_is_significant_and_of_no_size_is_not_named() {
-        let contact = TestContact { zero: 2.6e-3, ..TestContact::PLAIN };
-        let trials = [1, 2].map(|seed| contact.trial(seed));
-        let data = Data::new(&trials);
-        let nominal = nominal_fit(&data, &TestContact::nominal());
-        let bias = Term { effect: crate::effects::find("force_bias").unwrap(), form: 0 };
-        let start: Vec<f64> = nominal.values.iter().copied().chain([1e-3]).collect();
-        let more = data.fit(&nominal.model.with(bias), &start, Effort::FULL);
-        let search = Search {
-            coarse: Data::new(&trials),
-            nominal: nominal.clone(),
-            data,
-            circumstances: Circumstances::default(),
-        };
-        let worth = search.worth(&more, &nominal);
-        assert!(worth.gain > LEAST_GAIN + worth.price, "{} nats", worth.gain);
-        assert!(!search.is_worth(&more, &nominal), "{} of the force", worth.part_of_force);
-        assert_eq!(names(&found([&contact; 2])), Vec::<&str>::new());
-    }
 
-    /// A ripple along the depth, three waves within it and eight times the sensor's noise: no effect of the list is one.
     #[test]
     fn what_no_effect_explains_is_unknown() {
         let rippled = |seed: u64| {

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::fit::{Data, Fit};
+use super::data::Data;
+use super::fit::Fit;
 use super::tones;
 use crate::diagnose::linalg::{dot, remove, solve};
 use crate::diagnose::term::Term;

@@ -6,10 +6,11 @@
 use rayon::prelude::*;
 
 use super::criteria::{FAR_FROM_NOISE, LEAST_GAIN, LEAST_PART_OF_FORCE};
-use super::fit::{Effort, Fit, Rest};
+use super::fit::{Effort, Fit};
 use super::held_out::Folds;
 use super::model::index;
-use super::selection::{MOST_TERMS, Search};
+use super::rest::Rest;
+use super::search::{MOST_TERMS, Search};
 use super::worth::free;
 use crate::diagnose::term::Term;
 

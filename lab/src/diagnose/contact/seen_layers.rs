@@ -6,9 +6,12 @@
 use rayon::prelude::*;
 
 use super::broken_line::DepthProfile;
-use super::fit::{Effort, Fit, Rest};
-use super::model::{Fall, index};
-use super::selection::{FAR_ENERGY, Search};
+use super::criteria::MUCH_MISSING;
+use super::fall::Fall;
+use super::fit::{Effort, Fit};
+use super::model::index;
+use super::rest::Rest;
+use super::search::Search;
 use crate::diagnose::term::Term;
 use crate::effects::{self, HYSTERESIS_BETWEEN, HYSTERESIS_SLIP, LAYERS_OF_FORMS};
 
@@ -30,7 +33,7 @@ impl Search<'_> {
     /// by as many layers whatever it is.
     pub(super) fn seen_layers(&self) -> Vec<Fit> {
         let nominal = &self.nominal;
-        if nominal.model.bilateral || nominal.energy < FAR_ENERGY * self.data.expected() {
+        if nominal.model.bilateral || nominal.energy < MUCH_MISSING * self.data.expected() {
             return Vec::new();
         }
         let forces: Vec<Vec<f64>> = self.coarse.trials.iter().map(|trial| trial.force.clone()).collect();

@@ -2,9 +2,11 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::fit::{Data, Fit, Rest};
+use super::data::Data;
+use super::fit::Fit;
 use super::held_out::Folds;
 use super::model::ContactModel;
+use super::rest::Rest;
 use crate::diagnose::linalg::{dot, energy};
 use crate::effects::{LEARNED_KNOTS, geometric};
 

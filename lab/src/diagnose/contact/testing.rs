@@ -4,8 +4,12 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution as _, Normal};
 
-use super::nominal::NominalContact;
+use super::data::Data;
+use super::model::ContactModel;
+use super::nominal::{NominalContact, nominal_fit};
 use super::trial::ContactTrial;
+use crate::diagnose::term::Term;
+use crate::effects;
 use crate::recording::Recording;
 use crate::rig::Contact;
 use crate::sensors::{Channel, Figures};
@@ -94,5 +98,13 @@ impl TestContact {
         let channel = |noise: f64| Channel { resolution: 0.0, noise };
         let figures = Figures { position: channel(POSITION_NOISE), force: Some(channel(FORCE_NOISE)), effort: None };
         ContactTrial::new(recording, figures, 1).unwrap()
+    }
+
+    /// The law of this contact with the effect `name` by its form `form`, and its values with `own` for the effect.
+    pub fn law_with(&self, name: &str, form: usize, own: &[f64]) -> (ContactModel, Vec<f64>) {
+        let trials = [self.trial(1)];
+        let plain = nominal_fit(&Data::new(&trials), &Self::nominal());
+        let model = plain.model.with(Term { effect: effects::find(name).unwrap(), form });
+        (model, plain.values.iter().chain(own).copied().collect())
     }
 }

@@ -3,14 +3,13 @@
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
-use super::fit::{Data, Fit};
+use super::criteria::{LARGEST_OWN_SHARE, LINE_TOLERANCE};
+use super::data::Data;
+use super::fit::Fit;
 use crate::effects::{FrequencySearch, Start, ToneWeight};
 
 /// Frequencies that are tried.
 const MOST_FREQUENCIES: usize = 4;
-
-/// Share of the motion's variance that it may have at the frequency of a wave: a chirp has less at any, strokes have half.
-const LARGEST_OWN_SHARE: f64 = 0.01;
 
 /// The loudest of `search` in the weighted residual `rest` of `fit`.
 #[must_use]
@@ -37,9 +36,6 @@ pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f
 pub fn is_in_step(data: &Data<'_>, frequency: f64) -> bool {
     Rows::of_motion(data).is_loud_at(frequency)
 }
-
-/// Part by which a line of the spectrum may be off the frequency that it is known by: twice what mains are.
-pub const LINE_TOLERANCE: f64 = 0.008;
 
 /// Where the spectrum around a line is looked at, of its frequency to either side: beyond the skirts of the line itself, and no farther than
 /// a spectrum stays alike.

@@ -2,10 +2,11 @@
 
 use super::criteria::{
     FAR_FROM_NOISE, FAR_LEAST_PART_OF_ALL, FAR_LEAST_SHARE, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE,
-    LEAST_SHARE, LEAST_TOLD_SHARE, LEAST_VUONG,
+    LEAST_SHARE, LEAST_TOLD_SHARE, LEAST_VUONG, VUONG_BLOCK_TIMES,
 };
-use super::fit::{Fit, Rest};
-use super::selection::Search;
+use super::fit::Fit;
+use super::rest::Rest;
+use super::search::Search;
 use crate::diagnose::model_comparison::vuong;
 
 /// What a larger model has over a smaller one.
@@ -29,9 +30,8 @@ pub struct Worth {
     pub price: f64,
 }
 
-/// Blocks that likelihoods are compared over, and integrated autocorrelation times that a block is long at the least.
+/// Blocks that likelihoods are compared over.
 const BLOCKS: usize = 40;
-const BLOCK_TIMES: f64 = 3.0;
 
 impl Search<'_> {
     /// What `more` has over `less`.
@@ -42,7 +42,7 @@ impl Search<'_> {
         let above = |energy: f64| (energy - self.data.expected()).max(0.0);
         let scale = 0.5 / (rest.power * rest.correlated_rows);
         let logs = |rows: &[f64]| -> Vec<f64> { rows.iter().map(|row| -scale * row * row).collect() };
-        let block = (self.data.rows() / BLOCKS).max((BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
+        let block = (self.data.rows() / BLOCKS).max((VUONG_BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
         Worth {
             gain: scale * taken,
             share: taken.max(0.0) / above(less.energy).max(taken.max(f64::MIN_POSITIVE)),
@@ -112,4 +112,39 @@ pub(super) fn are_told_apart(worth: &Worth) -> bool {
 /// Values that are fitted.
 pub(super) fn free(fit: &Fit) -> usize {
     fit.model.free_count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::circumstances::Circumstances;
+    use super::super::data::Data;
+    use super::super::fit::Effort;
+    use super::super::nominal::nominal_fit;
+    use super::super::outcome::identify;
+    use super::super::testing::TestContact;
+    use super::*;
+    use crate::diagnose::term::Term;
+
+    #[test]
+    fn what_is_significant_and_of_no_size_is_not_named() {
+        let contact = TestContact { zero: 2.6e-3, ..TestContact::PLAIN };
+        let trials = [1, 2].map(|seed| contact.trial(seed));
+        let data = Data::new(&trials);
+        let nominal = nominal_fit(&data, &TestContact::nominal());
+        let bias = Term { effect: crate::effects::find("force_bias").unwrap(), form: 0 };
+        let start: Vec<f64> = nominal.values.iter().copied().chain([1e-3]).collect();
+        let more = data.fit(&nominal.model.with(bias), &start, Effort::FULL);
+        let search = Search {
+            coarse: Data::new(&trials),
+            nominal: nominal.clone(),
+            data,
+            circumstances: Circumstances::default(),
+        };
+        let worth = search.worth(&more, &nominal);
+        assert!(worth.gain > LEAST_GAIN + worth.price, "{} nats", worth.gain);
+        assert!(!search.is_worth(&more, &nominal), "{} of the force", worth.part_of_force);
+        let outcome = identify(trials.to_vec(), &trials, &TestContact::nominal(), Circumstances::default(), &|_| {});
+        let outcome = outcome.unwrap();
+        assert_eq!(outcome.chosen.model.names(outcome.known_terms), Vec::<&str>::new());
+    }
 }

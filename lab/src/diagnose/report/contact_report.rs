@@ -6,7 +6,7 @@ use super::contact_residual::contact_residual;
 use super::correlation;
 use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
 use super::summary;
-use crate::diagnose::contact::fit::Data;
+use crate::diagnose::contact::data::Data;
 use crate::diagnose::contact::held_out::rms;
 use crate::diagnose::contact::learned::LearnedCurve;
 use crate::diagnose::contact::model::index;

@@ -1,0 +1,117 @@
+//! A set of effects with one more: each that promises to be worth it, fitted.
+
+use rayon::prelude::*;
+
+use super::criteria::MUCH_MISSING;
+use super::fit::{Effort, Fit};
+use super::model::{ContactModel, index};
+use super::own_values::{moved_values, own_values};
+use super::projection::{Projection, Promise};
+use super::rest::Rest;
+use super::search::{Search, sorted_names};
+use crate::diagnose::term::Term;
+
+/// Promises of a round that are fitted.
+const TRIED: usize = 14;
+
+/// Of these, how many are fitted to the end.
+const COARSELY_POLISHED: usize = 10;
+
+/// And of these, on every row.
+const POLISHED: usize = 5;
+
+/// Other surfaces that a law's search starts from where much is missing, of the depth.
+const SURFACES: [f64; 3] = [-0.3, 0.15, 0.4];
+
+impl Search<'_> {
+    /// `base` with each promising effect, and with what each trial may have for itself, the best first.
+    pub(super) fn grown(&self, base: &Fit) -> Vec<Fit> {
+        let data = &self.coarse;
+        let model = &base.model;
+        let promises = self.promises(base, &|_| true);
+        let mut tried: Vec<Fit> =
+            promises.par_iter().take(TRIED).map(|(promise, base)| self.with_effect(promise, base)).collect();
+        tried.par_extend(own_values(model).into_par_iter().map(|own| {
+            let model = ContactModel { own, ..model.clone() };
+            let start = moved_values(base, &model);
+            data.fit(&model, &start, Effort::QUICK)
+        }));
+        tried.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        tried
+    }
+
+    /// What each effect that is `asked` for promises beside `base`, the best first: from where `base` stands, and where much is missing
+    /// from other surfaces, because what is missing bends the nominal values, and what a motion can show depends on where the contact
+    /// begins.
+    pub(super) fn promises(&self, base: &Fit, asked: &(dyn Fn(&Term) -> bool + Sync)) -> Vec<(Promise, Fit)> {
+        let asked = |term: &Term| asked(term) && !self.circumstances.refuted.contains(&term.name());
+        let mut bases = vec![base.clone()];
+        if !base.model.bilateral && base.energy > MUCH_MISSING * self.coarse.expected() {
+            let moved = SURFACES.par_iter().map(|part| {
+                let mut values = base.values.clone();
+                values[index::SURFACE] += part * base.model.scales.depth;
+                self.coarse.fit_holding(&base.model, &values, Effort::QUICK, &|at| at == index::SURFACE)
+            });
+            bases.par_extend(moved);
+        }
+        let mut best: Vec<(Promise, Fit)> = Vec::new();
+        for fit in bases {
+            let lost = fit.energy - base.energy;
+            let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
+            let model = &fit.model;
+            let excitation = model.scales.excitation(self.coarse.trials, stiffness, surface, model.bilateral);
+            for mut promise in Projection::of(&self.coarse, &fit).promises(&excitation, &asked) {
+                promise.gain -= lost;
+                match best.iter_mut().find(|(other, _)| other.term.is(&promise.term)) {
+                    Some((other, _)) if other.gain >= promise.gain => {}
+                    Some(other) => *other = (promise, fit.clone()),
+                    None => best.push((promise, fit.clone())),
+                }
+            }
+        }
+        best.sort_by(|(a, _), (b, _)| b.gain.total_cmp(&a.gain));
+        best
+    }
+
+    /// `base` with an effect.
+    pub(super) fn with_effect(&self, promise: &Promise, base: &Fit) -> Fit {
+        let model = base.model.with(promise.term);
+        let start: Vec<f64> = base.values.iter().chain(&promise.values).copied().collect();
+        self.coarse.fit(&model, &start, Effort::QUICK)
+    }
+
+    /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
+    /// as well the one with the fewest is polished, and leaves room for other effects.
+    pub(super) fn polished(&self, quick: Vec<Fit>) -> Vec<Fit> {
+        self.to_the_end(distinct(self.coarsely_polished(quick)))
+    }
+
+    /// The best of `quick` fitted to the end on the means of rows, the best first at the price of their values.
+    pub(super) fn coarsely_polished(&self, mut quick: Vec<Fit>) -> Vec<Fit> {
+        let Some(least) = quick.iter().min_by(|a, b| a.energy.total_cmp(&b.energy)) else { return Vec::new() };
+        let rest = Rest::of(&self.coarse, least);
+        quick.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
+        let mut fits: Vec<Fit> = quick.into_iter().take(COARSELY_POLISHED).collect();
+        fits.par_iter_mut().for_each(|fit| *fit = self.coarse.fit(&fit.model, &fit.values, Effort::FULL));
+        fits.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
+        fits
+    }
+
+    /// The first of `fits` on every row.
+    pub(super) fn to_the_end(&self, mut fits: Vec<Fit>) -> Vec<Fit> {
+        fits.truncate(POLISHED);
+        fits.par_iter().map(|fit| self.data.fit(&fit.model, &fit.values, Effort::FULL)).collect()
+    }
+}
+
+/// The first of each set of names.
+pub(super) fn distinct(fits: Vec<Fit>) -> Vec<Fit> {
+    let mut kept: Vec<Fit> = Vec::new();
+    for fit in fits {
+        let own = sorted_names(&fit.model);
+        if kept.iter().all(|other| sorted_names(&other.model) != own || other.model.own != fit.model.own) {
+            kept.push(fit);
+        }
+    }
+    kept
+}

@@ -1,0 +1,38 @@
+//! What each row is worth beside a law: its own variance, and that of what the law leaves.
+
+use rayon::prelude::*;
+
+use super::colour::noise_power;
+use super::criteria::NOTABLE_POWER;
+use super::data::Data;
+use super::fit::Fit;
+use super::variance::{law_variance, noise_along, noise_scale};
+
+impl Data<'_> {
+    /// The same with each row worth what is expected of it under `fit`: to the force's variance come those of position, velocity and
+    /// acceleration, each by how much the force changes with it (effective variance: J. Orear, *Am. J. Phys.* 50, 1982), and one variance
+    /// for what the law itself leaves. Where `fit` leaves less than the sensors are said to, they leave no more than that; where their noise
+    /// remembers, they leave what that comes to.
+    #[must_use]
+    pub fn weighed(&self, fit: &Fit) -> Self {
+        let noise: Vec<Vec<f64>> = self
+            .trials
+            .par_iter()
+            .enumerate()
+            .map(|(number, trial)| noise_along(&fit.model, &fit.values, trial, number))
+            .collect();
+        let residual = self.residuals(&fit.model, &fit.values);
+        let rows = noise.iter().flatten().zip(residual.iter().flatten()).filter(|(variance, _)| variance.is_finite());
+        let rows: Vec<(f64, f64)> = rows.map(|(variance, residual)| (*variance, residual * residual)).collect();
+        let coloured = noise_power(self.trials, fit, &noise, &residual);
+        let scale = if coloured > NOTABLE_POWER { coloured } else { noise_scale(&rows) };
+        let noise: Vec<Vec<f64>> =
+            noise.iter().map(|trial| trial.iter().map(|variance| scale * variance).collect()).collect();
+        let rows: Vec<(f64, f64)> =
+            rows.iter().map(|(variance, square)| (scale.max(1.0) * variance, *square)).collect();
+        let misfit = law_variance(&rows);
+        let weight = |variance: &f64| if variance.is_finite() { (variance + misfit).sqrt().recip() } else { 0.0 };
+        let weights = noise.iter().map(|trial| trial.iter().map(weight).collect());
+        Self { trials: self.trials, weights: weights.collect(), noise, noise_is_as_stated: scale == 1.0 }
+    }
+}
