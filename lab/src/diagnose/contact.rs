@@ -12,6 +12,7 @@ pub mod fall;
 pub mod fit;
 mod growth;
 pub mod held_out;
+pub mod in_step;
 pub mod interval;
 mod judgement;
 pub mod learned;

@@ -124,17 +124,14 @@ fn power_of_level(details: &[Detail]) -> Option<f64> {
     let mut least = f64::INFINITY;
     for group in 0..GROUPS {
         let own: Vec<&Detail> = details.iter().filter(|detail| detail.group == group).collect();
-        if (own.len() as f64) < LEAST_PART_OF_COEFFICIENTS * details.len() as f64 {
+        if own.len() < LEAST_COUNT || (own.len() as f64) < LEAST_PART_OF_COEFFICIENTS * details.len() as f64 {
             continue;
-        }
-        if own.len() < LEAST_COUNT {
-            return None;
         }
         let left = without_motion(&own);
         let law = median(own.iter().map(|detail| detail.values[1].abs()).collect());
         let left = median(left.into_iter().map(f64::abs).collect());
         if law >= left {
-            return None;
+            continue;
         }
         least = least.min((left / NORMAL_MEDIAN).powi(2));
     }

@@ -33,6 +33,9 @@ thresholds! { "contact";
     LEAST_HELD_OUT_SHARE = 0.1, "1", chosen;
     /// Power of what is left over the sensors' from which something is: the sensors' own noise is known to some 15 %.
     NOTABLE_POWER = 1.32, "1", derived;
+    /// Power of noise that remembers, over what its rows' differences show, from which it is believed: of white noise it is found as up to
+    /// that by the scatter of medians.
+    LEAST_COLOUR = 1.1, "1", chosen;
     /// And part of the force's deviation from which it is called unknown.
     UNKNOWN_PART_OF_FORCE = 0.005, "1", chosen;
     /// Share of the mismatch that named effects have to take to stand for it: they halve what is left, in root mean square.
@@ -68,8 +71,8 @@ thresholds! { "contact";
     SEEN_BY_BOTH = 0.8, "1", chosen;
     /// Share of all wavelet coefficients that what the tool does has to have to be asked for the noise's power.
     LEAST_PART_OF_COEFFICIENTS = 0.05, "1", chosen;
-    /// Share of the motion's variance that it may have at the frequency of a wave: a chirp has less at any, strokes have half.
-    LARGEST_OWN_SHARE = 0.01, "1", chosen;
+    /// Share of a wave's variance that place and direction of the tool have from which the wave is not told from a law of the motion: half.
+    LARGEST_SHARE_IN_STEP = 0.5, "1", derived;
     /// Part by which a line of the spectrum may be off the frequency that it is known by: twice what mains are.
     LINE_TOLERANCE = 0.008, "1", derived;
 }

@@ -4,8 +4,8 @@ use super::circumstances::Circumstances;
 use super::data::Data;
 use super::fall::Fall;
 use super::fit::Fit;
+use super::in_step::is_in_step;
 use super::model::ContactModel;
-use super::tones::is_in_step;
 
 /// What a search works on.
 pub struct Search<'a> {
@@ -35,7 +35,7 @@ impl Search<'_> {
         let mut frequencies = fit.model.frequencies(&fit.values).into_iter();
         !fit.model.is_at_end(&fit.values)
             && fit.model.is_as_stated(&fit.values)
-            && !frequencies.any(|frequency| is_in_step(&self.coarse, frequency))
+            && !frequencies.any(|frequency| is_in_step(&self.coarse, fit, frequency))
             && (!falls(fit) || falls(&self.nominal))
     }
 

@@ -3,9 +3,10 @@
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
-use super::criteria::{LARGEST_OWN_SHARE, LINE_TOLERANCE};
+use super::criteria::LINE_TOLERANCE;
 use super::data::Data;
 use super::fit::Fit;
+use super::in_step::is_in_step;
 use crate::effects::{FrequencySearch, Start, ToneWeight};
 
 /// Frequencies that are tried.
@@ -15,7 +16,6 @@ const MOST_FREQUENCIES: usize = 4;
 #[must_use]
 pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f64]) -> Vec<Start> {
     let rows = Rows::of(search, data, fit, rest);
-    let own = Rows::of_motion(data);
     let mut heard: Vec<(f64, f64)> = Vec::new();
     for &(first, apart, count) in &search.frequencies {
         let frequencies: Vec<f64> = (0..count).map(|at| first + apart * at as f64).collect();
@@ -23,18 +23,12 @@ pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f
         let level = |at: Option<usize>| at.and_then(|at| power.get(at)).copied().unwrap_or(f64::NEG_INFINITY);
         let peaks = (0..count).filter(|at| power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1)));
         // A wave in step with the motion itself is not told from a law of the motion.
-        let is_motion = |at: &usize| own.is_loud_at(frequencies[*at]);
+        let is_motion = |at: &usize| is_in_step(data, fit, frequencies[*at]);
         heard.extend(peaks.filter(|at| !is_motion(at)).map(|at| (power[at], frequencies[at])));
     }
     heard.sort_by(|a, b| b.0.total_cmp(&a.0));
     heard.truncate(MOST_FREQUENCIES);
     heard.iter().map(|(_, frequency)| search.start(*frequency)).collect()
-}
-
-/// Whether the motion of `data` goes to and fro with `frequency`, Hz, itself.
-#[must_use]
-pub fn is_in_step(data: &Data<'_>, frequency: f64) -> bool {
-    Rows::of_motion(data).is_loud_at(frequency)
 }
 
 /// Where the spectrum around a line is looked at, of its frequency to either side: beyond the skirts of the line itself, and no farther than
@@ -99,25 +93,6 @@ impl Rows {
         Self(data.trials.iter().zip(data.starts()).map(trial).collect())
     }
 
-    /// The positions themselves, about their mean.
-    fn of_motion(data: &Data<'_>) -> Self {
-        let trial = |trial: &super::trial::ContactTrial| {
-            let mean = trial.position.iter().sum::<f64>() / trial.len().max(1) as f64;
-            trial.time.iter().zip(&trial.position).map(|(time, position)| (*time, 1.0, position - mean)).collect()
-        };
-        Self(data.trials.iter().map(trial).collect())
-    }
-
-    /// Whether more than [`LARGEST_OWN_SHARE`] of the squares lie at `frequency`.
-    fn is_loud_at(&self, frequency: f64) -> bool {
-        self.power(frequency) > LARGEST_OWN_SHARE * self.energy()
-    }
-
-    /// Sum of squares.
-    fn energy(&self) -> f64 {
-        self.0.iter().flatten().map(|(_, _, rest)| rest * rest).sum()
-    }
-
     /// What a wave of that frequency takes.
     fn power(&self, frequency: f64) -> f64 {
         let pulse = std::f64::consts::TAU * frequency;
@@ -132,20 +107,5 @@ impl Rows {
             2.0 * (sine * sine + cosine * cosine) / f64::max(weight, f64::MIN_POSITIVE)
         };
         self.0.iter().map(trial).sum()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::testing::TestContact;
-    use super::*;
-
-    #[test]
-    fn a_wave_at_the_frequency_of_the_strokes_is_in_step_with_them() {
-        let trials = [TestContact::PLAIN.trial(1)];
-        let data = Data::new(&trials);
-        // Strokes of 4 rad/s, their depth modulated with 1.1 rad/s; no motion at 3 Hz.
-        assert!(is_in_step(&data, 4.0 / std::f64::consts::TAU));
-        assert!(!is_in_step(&data, 3.0));
     }
 }

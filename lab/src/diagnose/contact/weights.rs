@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::colour::noise_power;
-use super::criteria::NOTABLE_POWER;
+use super::criteria::LEAST_COLOUR;
 use super::data::Data;
 use super::fit::Fit;
 use super::variance::{law_variance, noise_along, noise_scale};
@@ -25,7 +25,7 @@ impl Data<'_> {
         let rows = noise.iter().flatten().zip(residual.iter().flatten()).filter(|(variance, _)| variance.is_finite());
         let rows: Vec<(f64, f64)> = rows.map(|(variance, residual)| (*variance, residual * residual)).collect();
         let coloured = noise_power(self.trials, fit, &noise, &residual);
-        let scale = if coloured > NOTABLE_POWER { coloured } else { noise_scale(&rows) };
+        let scale = if coloured > LEAST_COLOUR { coloured } else { noise_scale(&rows) };
         let noise: Vec<Vec<f64>> =
             noise.iter().map(|trial| trial.iter().map(|variance| scale * variance).collect()).collect();
         let rows: Vec<(f64, f64)> =

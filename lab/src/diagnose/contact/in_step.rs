@@ -1,0 +1,116 @@
+//! Which waves in time the motion of the tool keeps step with: those are not told from a law of place and direction.
+
+use nalgebra::Matrix2;
+
+use super::criteria::LARGEST_SHARE_IN_STEP;
+use super::data::Data;
+use super::fit::Fit;
+use super::trial::ContactTrial;
+
+/// Depths that rows are grouped by, each way and at rest.
+const DEPTHS: usize = 20;
+
+/// Part of the speed in root mean square below which a tool is at rest.
+const AT_REST: f64 = 0.1;
+
+/// Ways of a tool: out, at rest, in.
+const WAYS: usize = 3;
+
+/// Whether a wave of `frequency`, Hz, in contact is one of place and direction along the trials of `data`, whose surface `fit` has: whether
+/// of the wave's variance, of the phase at which it is most, more than [`LARGEST_SHARE_IN_STEP`] lies between groups of rows of one depth
+/// and one way (the correlation ratio: K. Pearson 1905). Strokes that repeat with the wave's period show one phase at each of them, and
+/// a law of the motion could be all of it; holds, sweeps and strokes of another period show all.
+#[must_use]
+pub fn is_in_step(data: &Data<'_>, fit: &Fit, frequency: f64) -> bool {
+    let trials = data.trials.iter().enumerate();
+    let shares = trials.filter_map(|(number, trial)| {
+        let surface = (!fit.model.bilateral).then(|| fit.model.surface(&fit.values, number));
+        let groups = groups(trial, surface);
+        let rows = groups.iter().flatten().count();
+        Some((rows as f64, largest_share(trial, &groups, frequency)?))
+    });
+    let (rows, share) = shares.fold((0.0, 0.0), |(rows, sum), (own, share)| (rows + own, sum + own * share));
+    share > LARGEST_SHARE_IN_STEP * rows
+}
+
+/// The group of each row of `trial`; `None` of a row before the `surface`.
+fn groups(trial: &ContactTrial, surface: Option<f64>) -> Vec<Option<usize>> {
+    let is_inside = |place: f64| surface.is_none_or(|surface| place > surface);
+    let inside = || (0..trial.len()).filter(|row| is_inside(trial.position[*row]));
+    let ends = inside().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
+        [low.min(trial.position[row]), high.max(trial.position[row])]
+    });
+    let square = inside().map(|row| trial.velocity[row].powi(2)).sum::<f64>() / inside().count().max(1) as f64;
+    let rest = AT_REST * square.sqrt();
+    let group = |row: usize| {
+        let depth = (trial.position[row] - ends[0]) / (ends[1] - ends[0]).max(f64::MIN_POSITIVE);
+        let way = match trial.velocity[row] {
+            speed if speed < -rest => 0,
+            speed if speed > rest => 2,
+            _ => 1,
+        };
+        WAYS * ((depth * DEPTHS as f64) as usize).min(DEPTHS - 1) + way
+    };
+    (0..trial.len()).map(|row| is_inside(trial.position[row]).then(|| group(row))).collect()
+}
+
+/// Largest share of a wave's variance that lies between groups, over all its phases; `None` where there are no rows.
+fn largest_share(trial: &ContactTrial, groups: &[Option<usize>], frequency: f64) -> Option<f64> {
+    let mut sums = vec![(0.0, [0.0; 2]); WAYS * DEPTHS];
+    let mut squares = Matrix2::zeros();
+    for (time, group) in trial.time.iter().zip(groups) {
+        let Some(group) = group else { continue };
+        let (sine, cosine) = (std::f64::consts::TAU * frequency * time).sin_cos();
+        sums[*group].0 += 1.0;
+        sums[*group].1[0] += sine;
+        sums[*group].1[1] += cosine;
+        squares += Matrix2::new(sine * sine, sine * cosine, sine * cosine, cosine * cosine);
+    }
+    let of_mean = |(count, [sine, cosine]): &(f64, [f64; 2])| {
+        Matrix2::new(sine * sine, sine * cosine, sine * cosine, cosine * cosine) / f64::max(*count, 1.0)
+    };
+    let all = sums
+        .iter()
+        .fold((0.0, [0.0; 2]), |(count, sum), (own, [sine, cosine])| (count + own, [sum[0] + sine, sum[1] + cosine]));
+    let mean = of_mean(&all);
+    let between = sums.iter().map(of_mean).sum::<Matrix2<f64>>() - mean;
+    // The greater root of between - share (squares - mean).
+    let ratio = (squares - mean).try_inverse()? * between;
+    let (half, product) = (0.5 * ratio.trace(), ratio.determinant());
+    let largest = half + (half * half - product).max(0.0).sqrt();
+    largest.is_finite().then(|| largest.clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::TestContact;
+    use super::*;
+
+    /// Whether a wave of `frequency` is in step with the test's tool where it goes as `depth` says.
+    fn is_in_step_with(depth: impl Fn(f64) -> f64, frequency: f64) -> bool {
+        let mut trial = TestContact::PLAIN.trial(1);
+        for row in 0..trial.len() {
+            let time = trial.time[row];
+            trial.position[row] = depth(time);
+            trial.velocity[row] = (depth(time + 1e-4) - depth(time - 1e-4)) / 2e-4;
+        }
+        let trials = [trial];
+        let data = Data::new(&trials);
+        is_in_step(&data, &nominal_fit(&data, &TestContact::nominal()), frequency)
+    }
+
+    #[test]
+    fn a_wave_is_in_step_with_strokes_of_its_period_and_not_with_holds_or_sweeps() {
+        let wave = 0.6;
+        let strokes = |every: f64| move |t: f64| 3e-3 * (1.0 - (std::f64::consts::TAU * t / every).cos());
+        assert!(is_in_step_with(strokes(1.0 / wave), wave));
+        assert!(is_in_step_with(strokes(2.0 / wave), wave), "two waves a stroke");
+        assert!(!is_in_step_with(strokes(0.37), wave));
+        let sweep = |t: f64| 3e-3 * (1.0 - (std::f64::consts::TAU * (0.3 + 0.1 * t) * t).cos());
+        assert!(!is_in_step_with(sweep, wave));
+        // Three depths, each held for four seconds: slow motion is loud at the wave's frequency, and tells it all the same.
+        let steps = |t: f64| 2e-3 * (1.0 + [0.0, 2.0, 1.0][((t / 4.0) as usize).min(2)]);
+        assert!(!is_in_step_with(steps, wave));
+    }
+}
