@@ -3,8 +3,9 @@
 //! A sensor's noise is stated, or estimated, from row to row; what remembers is louder below. At each level its power is a median's, which
 //! a few events do not move (I. M. Johnstone and B. W. Silverman, *J. R. Statist. Soc. B* 59, 1997), of what is left beside position,
 //! velocity and acceleration at that level (incoherent power: J. S. Bendat and A. G. Piersol, *Random Data*, 2010): the least of what is found
-//! in free motion and in contact, slow and fast, because noise is there whatever the tool does, and a law's misfit is not. From the level on at
-//! which the law's own force is louder than what is left, a misfit could be all of it: there the noise is taken to go on as above.
+//! in free motion and in contact, slow and fast, because noise is there whatever the tool does, and a law's misfit is not. Where the
+//! law's own force is louder at a level than what is left, a misfit could be all of it: what the tool does there is not asked, and free motion,
+//! in which no law of the contact has a force, is. Where nothing is left to be asked the noise is taken to go on as above.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -175,9 +176,14 @@ mod tests {
 
     /// `contact` with noise beside the sensor's white one, of deviation `size` and a memory of one row.
     fn with_memory(contact: &TestContact, size: f64, seed: u64) -> ContactTrial {
+        with_memory_of(contact, size, 1.0, seed)
+    }
+
+    /// The same with a memory of `rows`.
+    fn with_memory_of(contact: &TestContact, size: f64, rows: f64, seed: u64) -> ContactTrial {
         let mut recording = contact.recording(seed);
         let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed + 1000);
-        let kept = f64::exp(-1.0);
+        let kept = f64::exp(-1.0 / rows);
         let mut noise = 0.0;
         for force in recording.force.as_mut().unwrap() {
             let new: f64 = StandardNormal.sample(&mut random);
@@ -206,6 +212,16 @@ mod tests {
             let power = power_of(&trials);
             assert!((7.0..11.0).contains(&power), "{power}");
         }
+    }
+
+    /// A memory of five rows, as loud as the sensor's white noise: from row to row it is hardly seen, and in contact the law's force is
+    /// louder than it at all levels but the first; every second of free motion holds it.
+    #[test]
+    fn noise_that_the_law_hides_in_contact_is_heard_in_free_motion() {
+        let trials = [1, 2].map(|seed| with_memory_of(&TestContact::PLAIN, FORCE_NOISE, 5.0, seed));
+        // The sensor's own and as much again.
+        let power = power_of(&trials);
+        assert!((1.5..2.2).contains(&power), "{power}");
     }
 
     #[test]
