@@ -176,14 +176,9 @@ mod tests {
 
     /// `contact` with noise beside the sensor's white one, of deviation `size` and a memory of one row.
     fn with_memory(contact: &TestContact, size: f64, seed: u64) -> ContactTrial {
-        with_memory_of(contact, size, 1.0, seed)
-    }
-
-    /// The same with a memory of `rows`.
-    fn with_memory_of(contact: &TestContact, size: f64, rows: f64, seed: u64) -> ContactTrial {
         let mut recording = contact.recording(seed);
         let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed + 1000);
-        let kept = f64::exp(-1.0 / rows);
+        let kept = f64::exp(-1.0);
         let mut noise = 0.0;
         for force in recording.force.as_mut().unwrap() {
             let new: f64 = StandardNormal.sample(&mut random);
@@ -214,14 +209,19 @@ mod tests {
         }
     }
 
-    /// A memory of five rows, as loud as the sensor's white noise: from row to row it is hardly seen, and in contact the law's force is
-    /// louder than it at all levels but the first; every second of free motion holds it.
+    /// A level at which the law's force is a hundred times what is left in contact: free motion, with twice the stated deviation, is asked alone.
     #[test]
     fn noise_that_the_law_hides_in_contact_is_heard_in_free_motion() {
-        let trials = [1, 2].map(|seed| with_memory_of(&TestContact::PLAIN, FORCE_NOISE, 5.0, seed));
-        // The sensor's own and as much again.
-        let power = power_of(&trials);
-        assert!((1.5..2.2).contains(&power), "{power}");
+        let detail = |at: usize, group: usize, law: f64| {
+            let left = if at % 2 == 0 { 2.0 * NORMAL_MEDIAN } else { -2.0 * NORMAL_MEDIAN };
+            Detail { values: [left, law, 0.0, 0.0, 0.0], group }
+        };
+        let in_contact = |law: f64| (0..100).map(move |at| detail(at, 2, law));
+        let level = |law: f64, free: usize| {
+            power_of_level(&(0..free).map(|at| detail(at, 0, 0.0)).chain(in_contact(law)).collect::<Vec<_>>())
+        };
+        assert!((level(200.0, 100).unwrap() - 4.0).abs() < 1e-12);
+        assert_eq!(level(200.0, 0), None);
     }
 
     #[test]
