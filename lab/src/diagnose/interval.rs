@@ -17,6 +17,8 @@ pub struct Spread {
     pub remaining: Vec<f64>,
     /// Covariance of the steps by the curvature alone; empty where it has no inverse.
     pub covariance: Vec<Vec<f64>>,
+    /// How many times the variance by the curvature each value's own is, by the stretches; at least one, and one where it is not known.
+    pub inflations: Vec<f64>,
 }
 
 /// 95 % intervals of fitted values, and how the values hang together.
@@ -77,17 +79,24 @@ pub fn spread(residual: &[f64], columns: &[Vec<f64>], priors: &[f64], power: f64
         DMatrix::from_diagonal(&DVector::from_fn(count, |at, _| 1e-9 + priors[at] / (sizes[at] * sizes[at])));
     stretches.iter().for_each(|stretch| curvature += &stretch.products);
     let Some(factors) = curvature.clone().cholesky() else {
-        return Spread { half_widths: vec![f64::INFINITY; count], remaining: vec![0.0; count], covariance: Vec::new() };
+        return Spread {
+            half_widths: vec![f64::INFINITY; count],
+            remaining: vec![0.0; count],
+            covariance: Vec::new(),
+            inflations: vec![1.0; count],
+        };
     };
     let plain = factors.inverse();
     let score = stretches.iter().fold(DVector::zeros(count), |sum, stretch| sum + &stretch.score);
     let shared = shared_by_place(residual, columns, &sizes, rows);
     let shared = &plain * shared * &plain;
     let mut half_widths: Vec<f64> = (0..count).map(|at| NORMAL_97_5 * (power * plain[(at, at)]).sqrt()).collect();
+    let mut inflations = vec![1.0; count];
     if let Some(found) = jackknife(&stretches, &curvature) {
         for (at, half) in half_widths.iter_mut().enumerate() {
             let deviation = found.deviations[at].hypot(shared[(at, at)].max(0.0).sqrt());
             *half = half.max(student_97_5(found.freedoms[at]) * deviation);
+            inflations[at] = (deviation * deviation / (power * plain[(at, at)])).max(1.0);
         }
     }
     half_widths.iter_mut().zip(&sizes).for_each(|(half, size)| *half /= size);
@@ -97,6 +106,7 @@ pub fn spread(residual: &[f64], columns: &[Vec<f64>], priors: &[f64], power: f64
         half_widths,
         remaining,
         covariance: (0..count).map(|i| (0..count).map(|j| covariance(i, j)).collect()).collect(),
+        inflations,
     }
 }
 
@@ -192,6 +202,10 @@ mod tests {
         let held: Vec<f64> = independent.iter().take(rows / 25).flat_map(|value| [*value; 25]).collect();
         let found = half(&held, 0.0);
         assert!(found > 3.0 * plain && found < 8.0 * plain, "{found} {plain}");
+        // Its variance is that of 25 rows that say the same, by stretches that know it to a third.
+        let inflation = |residual: &[f64]| spread(residual, &column, &[0.0], 1.0, told).inflations[0];
+        let (white, remembering) = (inflation(&independent), inflation(&held));
+        assert!((1.0..2.5).contains(&white) && (9.0..50.0).contains(&remembering), "{white} {remembering}");
         // A prior three times as sharp as the data halves the width.
         let found = half(&vec![0.0; rows], 3.0 * rows as f64);
         assert!((found / plain - 0.5).abs() < 1e-6, "{found} {plain}");

@@ -8,7 +8,8 @@ use super::noise::Noise;
 use super::noise_search::search_noise;
 use super::trial::DriveTrial;
 
-/// Two halves of the recordings: every other trial, or the halves of a single one. Each is fitted once and judged once.
+/// Two halves of the recordings, which take turns with the parts of each trial: each half sees every motion. Each is fitted once and judged
+/// once.
 pub struct Folds {
     halves: [Vec<DriveTrial>; 2],
     /// For each half, the trial and the first row of each of its pieces.
@@ -24,6 +25,10 @@ pub struct HeldOut {
     pub density: f64,
 }
 
+/// Parts of a trial, and rows that one holds at the least.
+const PARTS: usize = 4;
+const LEAST_ROWS: usize = 200;
+
 /// Steps of the search on a half, from the values of the whole.
 const STEPS: usize = 5;
 
@@ -32,17 +37,14 @@ impl Folds {
     #[must_use]
     pub fn of(trials: &[DriveTrial]) -> Self {
         let mut folds = Self { halves: [Vec::new(), Vec::new()], places: [Vec::new(), Vec::new()] };
-        let mut put = |half: usize, trial: usize, rows: std::ops::Range<usize>| {
-            folds.places[half].push((trial, rows.start));
-            folds.halves[half].push(trials[trial].slice(rows));
-        };
-        match trials {
-            [single] => {
-                let middle = single.len() / 2;
-                put(0, 0, 0..middle);
-                put(1, 0, middle..single.len());
+        for (number, trial) in trials.iter().enumerate() {
+            let parts = (trial.len() / LEAST_ROWS).clamp(2, PARTS);
+            for part in 0..parts {
+                let [start, end] = [part, part + 1].map(|part| part * trial.len() / parts);
+                let half = (number + part) % 2;
+                folds.places[half].push((number, start));
+                folds.halves[half].push(trial.slice(start..end));
             }
-            all => all.iter().enumerate().for_each(|(at, trial)| put(at % 2, at, 0..trial.len())),
         }
         folds
     }
@@ -94,29 +96,56 @@ mod tests {
     use super::*;
     use crate::diagnose::drive::testing::{SCALES, TestDrive};
 
-    /// A load that is there in the first of two trials alone: values of the other half know nothing of it.
+    /// `trial`, the `number`th, with a load of 0.3 N in the parts that `loaded` names: the effort bears it.
+    fn with_load(mut trial: DriveTrial, loaded: &dyn Fn(usize) -> bool) -> DriveTrial {
+        let rows = trial.effort.len();
+        for (row, effort) in trial.effort.iter_mut().enumerate() {
+            *effort += if loaded(PARTS * row / rows) { 0.3 } else { 0.0 };
+        }
+        trial
+    }
+
+    /// A load that is there in one half of the parts alone: values of the other half know nothing of it.
     #[test]
     fn what_lives_in_one_half_is_not_taken_from_it_by_the_other() {
-        let trials = [TestDrive { load: 0.3, ..TestDrive::PLAIN }.trial(3.0, 1), TestDrive::PLAIN.trial(3.0, 2)];
+        let trial = |number: usize| TestDrive::PLAIN.trial(6.0, number as u64 + 1);
+        let trials = [0, 1].map(|number| with_load(trial(number), &|part| (number + part).is_multiple_of(2)));
         let data = Data { trials: &trials, least_encoder_variance: 1e-12 };
         let model = Model { terms: vec![Term::ConstantLoad], scales: SCALES };
         let noise = Noise { ln_disturbance: (1e-5f64).ln(), ln_encoder: (25e-12f64).ln() };
         let whole = fit(&data, &model, &[0.8, 4.0, 0.0, 0.15], noise, Effort::FULL);
         let common = noise.with_crossing(15.0, 1e-3, 0.8);
         let held = Folds::of(&trials).held_out(&data, &whole, &common);
-        // The first half is judged by the second's value, zero, and the second by the first's, 0.3: both leave all of it. A leak
-        // leaves nothing of it, the whole's value half of it.
+        // One half is judged by the other's value, zero, and the other by the one's, 0.3: both leave all of it. A leak leaves nothing of it,
+        // the whole's value half of it.
         for column in &held.missing {
             let left = rms(std::slice::from_ref(column));
             assert!((0.27..0.33).contains(&left), "{left}");
         }
         // Its density is that of a step of 0.3 N that a filter takes up within a few of its time constants; where both halves say the
         // same, of the encoder's noise alone.
-        let alike = [
-            TestDrive { load: 0.3, ..TestDrive::PLAIN }.trial(3.0, 1),
-            TestDrive { load: 0.3, ..TestDrive::PLAIN }.trial(3.0, 2),
-        ];
+        let alike = [0, 1].map(|number| with_load(trial(number), &|_| true));
         let same = Folds::of(&alike).held_out(&Data { trials: &alike, ..data }, &whole, &common);
         assert!(same.density < 0.1 * held.density, "{} {}", same.density, held.density);
+    }
+
+    /// A slow trial beside a fast one: a half that saw the slow one alone would not know the inertia.
+    #[test]
+    fn each_half_sees_parts_of_every_trial_and_no_row_is_in_both() {
+        let trials = [TestDrive::PLAIN.trial(6.0, 1), TestDrive::PLAIN.trial(0.9, 2)];
+        let folds = Folds::of(&trials);
+        for (number, trial) in trials.iter().enumerate() {
+            let mut seen = vec![0; trial.len()];
+            for half in [0, 1] {
+                let own = folds.places[half].iter().zip(&folds.halves[half]).filter(|((of, _), _)| *of == number);
+                let mut rows = 0;
+                for ((_, start), piece) in own {
+                    seen[*start..start + piece.len()].iter_mut().for_each(|times| *times += 1);
+                    rows += piece.len();
+                }
+                assert!((rows as f64 / trial.len() as f64 - 0.5).abs() < 0.01, "half {half} of trial {number}: {rows}");
+            }
+            assert!(seen.iter().all(|times| *times == 1), "trial {number}");
+        }
     }
 }

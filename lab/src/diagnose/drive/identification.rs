@@ -9,12 +9,13 @@ use super::model::index;
 use super::nominal::{NominalDrive, encoder_variance, missing_under, nominal_fit, punctual_and_lagged, scales};
 use super::outcome::Outcome;
 use super::outside_force::outside_forces;
-use super::selection::Search;
+use super::selection::{Chosen, Search};
 use super::trial::DriveTrial;
 use crate::diagnose::verdict::Verdict;
 
 /// Identifies the drive of `trials`; `None` where they show no motion or are too short. Where no law does and a force from outside comes
-/// and goes, the law of the rest is looked for.
+/// and goes, the law of the rest is looked for. Where that explains all of the recordings, nothing came from outside: to a rigid drive, by
+/// which such stretches are found, a resonance that is passed looks like a push.
 #[must_use]
 pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
     let first = identify_as_they_are(trials, rig, seed, say)?;
@@ -32,12 +33,15 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
         let own = stretches.iter().filter(|stretch| stretch.trial == number);
         trial.without(&own.map(|stretch| [stretch.start_s, stretch.end_s]).collect::<Vec<_>>())
     });
-    match identify_as_they_are(quiet.collect(), rig, seed, say) {
-        Some(second) if !second.named.is_empty() => {
-            Some(Outcome { verdict: Verdict::PartlyExplained, outside_forces: stretches, ..second })
-        }
-        _ => Some(first),
-    }
+    let Some(second) = identify_as_they_are(quiet.collect(), rig, seed, say).filter(|found| !found.named.is_empty())
+    else {
+        return Some(first);
+    };
+    let whole = identify_by(first.trials, rig, seed, say, &|search| search.fitted(&second.chosen));
+    Some(match whole {
+        Some(whole) if whole.verdict == Verdict::Explained => whole,
+        _ => Outcome { verdict: Verdict::PartlyExplained, outside_forces: stretches, ..second },
+    })
 }
 
 /// ln of the likelihood of `trials` under the refitted nominal law, nats; `None` where they show no motion.
@@ -50,6 +54,17 @@ pub fn nominal_likelihood(trials: &[DriveTrial], rig: &NominalDrive) -> Option<f
 }
 
 fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
+    identify_by(trials, rig, seed, say, &|search| search.run(say))
+}
+
+/// Identifies the drive of `trials` by the law that is `chosen` for them.
+fn identify_by(
+    trials: Vec<DriveTrial>,
+    rig: &NominalDrive,
+    seed: u64,
+    say: &dyn Fn(&str),
+    chosen: &dyn Fn(&Search<'_>) -> Chosen,
+) -> Option<Outcome> {
     let scales = scales(&trials, rig)?;
     let encoder_variance = encoder_variance(&trials, &scales);
     let data = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
@@ -62,7 +77,7 @@ fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, 
         search.is_worth(&lagged, &search.nominal).then_some(search)
     });
     let search = lag.unwrap_or_else(|| search_from(data, rig, nominal));
-    let chosen = search.run(say);
+    let chosen = chosen(&search);
     say("the drive: what is left");
     let mut outcome = judged(&search, chosen, seed);
     outcome.trials.clone_from(&trials);

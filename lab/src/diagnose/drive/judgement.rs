@@ -5,12 +5,11 @@ use super::criteria::{LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE, UNKNOWN_PART_
 use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::Fit;
 use super::held_out::{Folds, missing_forces, rms};
-use super::interval::intervals;
 use super::lack_of_fit::{a_curve_does_better, a_friction_that_changes_does_better};
 use super::model::index;
 use super::outcome::Outcome;
 use super::selection::{Chosen, Search};
-use super::validation::validated;
+use super::validation::{Validated, validated};
 use crate::diagnose::verdict::Verdict;
 
 /// What is told of `chosen`; noise is drawn from `seed`.
@@ -25,20 +24,19 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     );
     let given = missing_forces(data, &as_given(search), &common);
     let refitted = folds.held_out(data, &search.nominal, &common);
-    let (fit, improved, named) = validated(search, &folds, &common, chosen.fit.clone());
+    let Validated { fit, held_out, named, uncertainty } = validated(search, &folds, &common, chosen.fit.clone());
     let expected_noise = expected_noise(data, &fit, &common, seed);
-    let spread = intervals(data, &fit);
     let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed));
-    let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&improved.missing)], recorded_noise);
+    let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&held_out.missing)], recorded_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
         trials: Vec::new(),
         verdict,
-        intervals: spread.ends,
-        covariance: spread.covariance,
+        intervals: uncertainty.ends,
+        covariance: uncertainty.covariance,
         named,
         alternatives,
-        missing: [given, refitted.missing, improved.missing],
+        missing: [given, refitted.missing, held_out.missing],
         expected_noise,
         band_hz: search.band_hz,
         nominal: search.nominal.clone(),

@@ -168,6 +168,15 @@ impl Search<'_> {
         Chosen { fit, sets: distinct(sets) }
     }
 
+    /// The terms of `law`, which was found on other trials, with the values that these teach.
+    #[must_use]
+    pub fn fitted(&self, law: &Fit) -> Chosen {
+        let mut start = law.clone();
+        start.model.scales = self.scales;
+        let fit = self.pruned(self.polished(&start));
+        Chosen { fit, sets: Vec::new() }
+    }
+
     /// Whether the best of `grown`, or `best`, leaves so much that a link is looked for.
     fn leaves_much(&self, grown: &[Fit], best: &Fit) -> bool {
         let all = grown.iter().filter(|fit| !is_at_end(fit)).chain([best]);

@@ -197,7 +197,8 @@ impl Term {
             | Self::ToolInertia => &[0],
             // A weight of which a slide shows less than half a radian is any force that grows with the position.
             Self::AngleLoad if !scales.is_rotary => &[2],
-            Self::Stribeck => &[1, 2],
+            // What is gone where it moves is no dry friction: a coarse encoder that stands still looks like it.
+            Self::Stribeck => &[0, 1, 2],
             Self::Sublinear => &[0, 1],
             Self::Cogging => &[2],
             Self::Compliance(_) => &[0, 2],
@@ -275,4 +276,19 @@ impl Term {
 #[must_use]
 pub fn wavenumber(pitch: f64) -> f64 {
     std::f64::consts::TAU / pitch
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::SCALES;
+    use super::*;
+
+    #[test]
+    fn friction_that_is_gone_in_motion_is_no_stribeck_friction() {
+        let [speed, excess] = [0.1 * SCALES.speed, 0.1 * SCALES.effort];
+        assert!(Term::Stribeck.is_at_end(&[0.0, excess, speed], &SCALES));
+        assert!(!Term::Stribeck.is_at_end(&[0.5 * excess, excess, speed], &SCALES));
+        // Without an excess it is Coulomb friction.
+        assert!(Term::Stribeck.is_at_end(&[excess, 0.0, speed], &SCALES));
+    }
 }

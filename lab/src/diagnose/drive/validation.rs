@@ -1,17 +1,31 @@
-//! Which terms rows that their values were not fitted to confirm (cross-validation).
+//! Which terms stand: those that rows confirm which their values were not fitted to (cross-validation), and whose gain is more than what
+//! innovations that remember would give to a term that is not there.
 
-use super::criteria::{COMPARISONS, LEAST_HELD_OUT_SHARE};
+use super::criteria::{COMPARISONS, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_HELD_OUT_SHARE};
 use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
+use super::interval::{Uncertainty, intervals};
 use super::noise::Noise;
 use super::selection::Search;
 use super::term::Term;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 
-/// The terms that unseen rows confirm, with what each takes of them.
+/// A fit of which every term stands.
+pub struct Validated {
+    /// The fit.
+    pub fit: Fit,
+    /// What it leaves of unseen rows.
+    pub held_out: HeldOut,
+    /// Its terms that are told, with what each takes of them.
+    pub named: Vec<NamedTerm>,
+    /// How far its values can be trusted.
+    pub uncertainty: Uncertainty,
+}
+
+/// `fit` without the terms that do not stand.
 #[must_use]
-pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
+pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fit) -> Validated {
     loop {
         let held = folds.held_out(&search.data, &fit, common);
         let first = search.nominal.model.terms.len();
@@ -34,14 +48,24 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
             fit = without[nth].0.clone();
             continue;
         }
-        let named = without.iter().enumerate().map(|(nth, (less, left))| NamedTerm {
+        let uncertainty = intervals(&search.data, &fit);
+        let comparisons: Vec<RobustRatio> =
+            without.iter().zip(&told).map(|((less, _), at)| RobustRatio::of(&fit, less, *at, &uncertainty)).collect();
+        let weakest = (0..told.len())
+            .filter(|nth| !comparisons[*nth].is_decisive() && !carries(&fit.model.terms[told[*nth]]))
+            .min_by(|a, b| comparisons[*a].gain.total_cmp(&comparisons[*b].gain));
+        if let Some(nth) = weakest {
+            fit = without[nth].0.clone();
+            continue;
+        }
+        let named = without.iter().zip(&comparisons).enumerate().map(|(nth, ((_, left), ratio))| NamedTerm {
             at: told[nth],
             held_out_share: share(left).clamp(0.0, 1.0),
-            p_value: (COMPARISONS * p_value(&fit, less)).min(1.0),
+            p_value: (COMPARISONS * ratio.p_value()).min(1.0),
             without: rms(&left.missing),
         });
         let named = named.collect();
-        return (fit, held, named);
+        return Validated { fit, held_out: held, named, uncertainty };
     }
 }
 
@@ -51,7 +75,62 @@ fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
     search.lessened(fit, model, values)
 }
 
-/// Likelihood-ratio test of `more` against `less`.
-fn p_value(more: &Fit, less: &Fit) -> f64 {
-    likelihood_ratio_p(more.log_likelihood - less.log_likelihood, more.values.len().saturating_sub(less.values.len()))
+/// Likelihood ratio of a fit with a term and one without it, where innovations remember: its distribution under the smaller law is that of a
+/// weighted sum of chi-squares, whose weights are the eigenvalues of the values' covariance over that by the curvature, and divided by their
+/// mean it is compared with a chi-square as usual (A. Rotnitzky, N. P. Jewell, *Biometrika* 77, 1990, 485). Of the weights the diagonal is taken.
+struct RobustRatio {
+    /// Gain of log likelihood over that mean, nats.
+    gain: f64,
+    /// How many values the larger fit has more.
+    values: usize,
+}
+
+impl RobustRatio {
+    /// That of `more`, with term `at`, and `less` without it.
+    fn of(more: &Fit, less: &Fit, at: usize, uncertainty: &Uncertainty) -> Self {
+        let own = &uncertainty.inflations[more.model.values_of(at)];
+        let mean = own.iter().sum::<f64>() / own.len().max(1) as f64;
+        let values = more.values.len().saturating_sub(less.values.len());
+        Self { gain: (more.log_likelihood - less.log_likelihood) / mean, values }
+    }
+
+    /// Whether it asks for the term.
+    fn is_decisive(&self) -> bool {
+        self.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * self.values.max(1) as f64
+    }
+
+    fn p_value(&self) -> f64 {
+        likelihood_ratio_p(self.gain, self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::levenberg_marquardt::Ended;
+    use super::super::model::Model;
+    use super::super::term::Term;
+    use super::super::testing::SCALES;
+    use super::*;
+
+    /// Forty nats for one value, where twenty rows say the same and where each says its own: two nats are chance.
+    #[test]
+    fn a_gain_that_rows_repeat_is_counted_once() {
+        let fit = |terms: Vec<Term>, values: Vec<f64>, log_likelihood: f64| Fit {
+            model: Model { terms, scales: SCALES },
+            values,
+            noise: Noise { ln_disturbance: 0.0, ln_encoder: 0.0 },
+            log_likelihood,
+            ended: Ended::Converged,
+        };
+        let less = fit(vec![], vec![0.8, 4.0, 0.0], 100.0);
+        let more = fit(vec![Term::Coulomb], vec![0.8, 4.0, 0.0, 0.1], 140.0);
+        let ratio = |inflation: f64| {
+            let inflations = vec![1.0, 1.0, 1.0, inflation];
+            RobustRatio::of(&more, &less, 0, &Uncertainty { ends: Vec::new(), covariance: Vec::new(), inflations })
+        };
+        assert!(ratio(1.0).is_decisive() && ratio(1.0).p_value() < 1e-15);
+        assert!(!ratio(20.0).is_decisive());
+        // Twice two nats under a chi-square of one degree: two deviations, 0.0455.
+        assert!((ratio(20.0).p_value() - 0.0455).abs() < 1e-4, "{}", ratio(20.0).p_value());
+    }
 }
