@@ -233,10 +233,7 @@ fn cases_of_another_author_are_scored_above_our_own() {
     assert_eq!(files, ["diagnosis.json", "rig.toml", "trial-1.csv", "trial-2.csv"]);
     let own = ChallengeScore { cases: 1, ..score };
     let table = summary::table(&own);
-    assert!(
-        table.find("`elsewhere` (another author)").unwrap() < table.find("| no effect: no false alarm").unwrap(),
-        "{table}"
-    );
+    assert!(table.find("| `elsewhere` |").unwrap() < table.find("| no effect: no false alarm").unwrap(), "{table}");
 }
 
 #[test]

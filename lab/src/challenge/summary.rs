@@ -3,7 +3,7 @@
 use super::binomial::clopper_pearson;
 use super::challenge_score::ChallengeScore;
 use super::recordings::table::line;
-use super::targets::{Target, external_lines, statistics, targets};
+use super::targets::{Target, statistics, targets};
 
 /// What begins the part of a README or page of the documentation that the command writes.
 pub const BEGIN: &str = "<!-- written by `palpate challenge --publish`; not by hand -->";
@@ -27,18 +27,39 @@ pub fn table(challenge: &ChallengeScore) -> String {
     text
 }
 
-/// The cases of other authors, then the drawn ones: a line each, and the statistics that are no shares.
+/// The cases of other authors, a line for each, then the drawn ones, a line for each kind, and the statistics that are no shares.
 fn drawn(challenge: &ChallengeScore) -> String {
-    let mut text = "| concealed | | of | share (95 % interval) | target |\n|---|---|---|---|---|\n".to_owned();
-    let own = if challenge.cases > 0 { targets(challenge) } else { Vec::new() };
-    let lines = external_lines(challenge).into_iter().chain(own);
-    for Target { what, hits, of, target, .. } in lines {
-        text += &format!("| {what} | {hits} | {of} | {} | {target} |\n", percent(hits, of));
+    let mut text = String::new();
+    if !challenge.sources.is_empty() {
+        text += &others(challenge);
     }
     if challenge.cases > 0 {
+        text += "| concealed | | of | share (95 % interval) | target |\n|---|---|---|---|---|\n";
+        for Target { what, hits, of, target, .. } in targets(challenge) {
+            text += &format!("| {what} | {hits} | {of} | {} | {target} |\n", percent(hits, of));
+        }
         text += &format!("\n{}\n", statistics(challenge));
     }
     text
+}
+
+/// How many cases of each other author came out right, kind by kind.
+fn others(challenge: &ChallengeScore) -> String {
+    let mut text = "| another author's cases | nothing missing: no false alarm | one effect: named | the same: among answer and alternatives \
+                    | two effects: both named | outside the list: `unknown` |\n|---|---|---|---|---|---|\n"
+        .to_owned();
+    for set in &challenge.sources {
+        let counts = [
+            (set.none.n - set.none.false_alarms, set.none.n),
+            (set.single.named_rightly, set.single.n),
+            (set.single.within_rivals, set.single.n),
+            (set.pairs.named_rightly, set.pairs.n),
+            (set.outside.owned, set.outside.n),
+        ];
+        let cells = counts.map(|(hits, of)| if of > 0 { format!("{hits} of {of}") } else { "-".to_owned() });
+        text += &format!("| `{}` | {} |\n", set.name, cells.join(" | "));
+    }
+    text + "\n"
 }
 
 /// "92 % (81 to 97 %)"; nothing where there is no case.
