@@ -105,7 +105,8 @@ fn as_published(
         (rows.iter().filter(|row| is(row)).count() as u64, rows.len() as u64)
     };
     let ((hits, n), (before, all)) = (count(run), count(published));
-    assert!(n > 2 && all > 20, "{n} and {all} cases show nothing");
+    // Ten cases: half right beside all right is refused still, at (11 / 12)^10 against one half.
+    assert!(n > 2 && all >= 10, "{n} and {all} cases show nothing");
     // Laplace's rule: what was always so among few is not always so.
     let share = (before as f64 + 1.0) / (all as f64 + 2.0);
     let binomial = Binomial::new(share, n).unwrap();
@@ -120,9 +121,13 @@ fn half_right_is_not_what_is_published() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let published: ChallengeScore = serde_json::from_value(json(&project.join("results/challenge.json"))).unwrap();
     let large: Vec<&CaseScore> = published.rows.iter().filter(|row| row.is_large()).collect();
-    let (right, wrong): (Vec<&CaseScore>, Vec<&CaseScore>) = large.into_iter().partition(|row| row.is_right());
+    let right: Vec<CaseScore> = large.into_iter().filter(|row| row.is_right()).cloned().collect();
+    let wrong = right.iter().cloned().map(|mut row| {
+        row.answer.named.clear();
+        row
+    });
     let mut run = published.clone();
-    run.rows = right.iter().take(8).chain(wrong.iter().cycle().take(8)).map(|row| (*row).clone()).collect();
+    run.rows = right.iter().take(8).cloned().chain(wrong.take(8)).collect();
     let refused = std::panic::catch_unwind(|| as_published(&published, &run, CaseScore::is_large, CaseScore::is_right));
     assert!(refused.is_err(), "eight of sixteen pass");
 }

@@ -37,7 +37,9 @@ pub(super) fn alternatives(
     let expected = search.data.expected();
     let is_open = |other: &&Fit| {
         let worth = search.worth(fit, other);
-        sorted_names(&other.model) != sorted_names(&fit.model)
+        // Values of each trial's own have no name that could be told.
+        other.model.terms.len() > first
+            && sorted_names(&other.model) != sorted_names(&fit.model)
             && other.model.terms.len() <= fit.model.terms.len()
             && (worth.gain < LEAST_GAIN || worth.vuong < LEAST_VUONG || search.is_one_law(&other.model, &fit.model))
             && search.is_worth(other, &search.nominal)

@@ -3,9 +3,9 @@
 //! A sensor's noise is stated, or estimated, from row to row; what remembers is louder below. At each level its power is a median's, which
 //! a few events do not move (I. M. Johnstone and B. W. Silverman, *J. R. Statist. Soc. B* 59, 1997), of what is left beside position,
 //! velocity and acceleration at that level (incoherent power: J. S. Bendat and A. G. Piersol, *Random Data*, 2010): the least of what is found
-//! in free motion and in contact, slow and fast, because noise is there whatever the tool does, and a law's misfit is not. Where the
-//! law's own force is louder at a level than what is left, a misfit could be all of it: what the tool does there is not asked, and free motion,
-//! in which no law of the contact has a force, is. Where nothing is left to be asked the noise is taken to go on as above.
+//! in free motion and in contact, slow and fast, because noise is there whatever the tool does, and a law's misfit is not. From the level on at
+//! which the law's own force is louder than what is left, a misfit could be all of it: contact is not asked, and free motion, in which no law of
+//! the contact has a force, is. Where nothing is left to be asked the noise is taken to go on as above.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,10 +40,14 @@ pub fn noise_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], resid
     let mut pyramids: Vec<Pyramid> = (0..trials.len())
         .map(|number| Pyramid::of(&trials[number], fit, number, &noise[number], &residual[number]))
         .collect();
+    let free: usize =
+        pyramids.iter().map(|pyramid| pyramid.groups.iter().filter(|group| FREE.contains(group)).count()).sum();
+    let rows: usize = trials.iter().map(ContactTrial::len).sum();
+    let has_free_motion = free as f64 >= LEAST_PART_OF_COEFFICIENTS * rows as f64;
     let (mut power, mut share, mut last) = (0.0, 1.0, 1.0);
     loop {
         let details: Vec<Detail> = pyramids.iter_mut().flat_map(Pyramid::descend).collect();
-        let Some(level) = power_of_level(&details) else { break };
+        let Some(level) = power_of_level(&details, has_free_motion) else { break };
         share *= 0.5;
         power += share * level;
         last = level;
@@ -55,6 +59,8 @@ pub fn noise_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], resid
 struct Pyramid {
     columns: [Vec<f64>; COLUMNS],
     groups: Vec<usize>,
+    /// Rows in contact before each row, and before the end.
+    in_contact_before: Vec<usize>,
     level: u32,
 }
 
@@ -64,8 +70,9 @@ struct Detail {
     group: usize,
 }
 
-/// Free or in contact, slow or fast.
-const GROUPS: usize = 4;
+/// Groups of details in free motion and in contact, slow and fast.
+const FREE: [usize; 2] = [0, 1];
+const IN_CONTACT: [usize; 2] = [2, 3];
 
 impl Pyramid {
     fn of(trial: &ContactTrial, fit: &Fit, number: usize, noise: &[f64], residual: &[f64]) -> Self {
@@ -92,8 +99,20 @@ impl Pyramid {
                 trial.acceleration.clone(),
             ],
             groups: rows().map(group).collect(),
+            in_contact_before: rows().fold(vec![0], |mut before, row| {
+                before.push(before[row] + usize::from(is_inside(row)));
+                before
+            }),
             level: 0,
         }
+    }
+
+    /// What the tool does over `reach` rows from `first` on, whose middle is `middle`: a detail that reaches into contact anywhere holds what
+    /// the law leaves there.
+    fn group(&self, first: usize, middle: usize, reach: usize) -> usize {
+        let last = (first + reach + 1).min(self.in_contact_before.len() - 1);
+        let is_free = self.in_contact_before[last] == self.in_contact_before[first.min(last)];
+        2 * usize::from(!is_free) + self.groups[middle] % 2
     }
 
     /// The details of the next level; what is left are the means.
@@ -109,7 +128,7 @@ impl Pyramid {
         let middle = |at: usize| ((wide * at as f64 + 0.5 * reach * (wide - 1.0)) as usize).min(self.groups.len() - 1);
         let details = (0..count).map(|at| Detail {
             values: std::array::from_fn(|column| detail(&self.columns[column], at)),
-            group: self.groups[middle(at)],
+            group: self.group(wide as usize * at, middle(at), (reach * (wide - 1.0)) as usize),
         });
         let details = details.collect();
         for column in &mut self.columns {
@@ -120,23 +139,30 @@ impl Pyramid {
     }
 }
 
-/// Power of the noise at a level; `None` where too few coefficients of what the tool does tell it, or where the law's force hides it.
-fn power_of_level(details: &[Detail]) -> Option<f64> {
-    let mut least = f64::INFINITY;
-    for group in 0..GROUPS {
-        let own: Vec<&Detail> = details.iter().filter(|detail| detail.group == group).collect();
-        if own.len() < LEAST_COUNT || (own.len() as f64) < LEAST_PART_OF_COEFFICIENTS * details.len() as f64 {
-            continue;
-        }
-        let left = without_motion(&own);
-        let law = median(own.iter().map(|detail| detail.values[1].abs()).collect());
-        let left = median(left.into_iter().map(f64::abs).collect());
-        if law >= left {
-            continue;
-        }
-        least = least.min((left / NORMAL_MEDIAN).powi(2));
+/// Power of the noise at a level; `None` where nothing tells it. In contact it is asked where the law hides it neither slow nor fast: a misfit
+/// that is louder than the law at some speed may be all that is left at another. In free motion no law hides anything; where there is some, but too
+/// short for this level, contact alone does not tell noise from a misfit.
+fn power_of_level(details: &[Detail], has_free_motion: bool) -> Option<f64> {
+    let own = |group: usize| -> Vec<&Detail> { details.iter().filter(|detail| detail.group == group).collect() };
+    let least_part = LEAST_PART_OF_COEFFICIENTS * details.len() as f64;
+    let asked = |group: &usize| own(*group).len() as f64 >= least_part;
+    let free: Vec<f64> = FREE.into_iter().filter(asked).filter_map(|group| power_of(&own(group))).collect();
+    if has_free_motion && free.is_empty() {
+        return None;
     }
-    least.is_finite().then_some(least)
+    let in_contact: Option<Vec<f64>> =
+        IN_CONTACT.into_iter().filter(asked).map(|group| power_of(&own(group))).collect();
+    in_contact.unwrap_or_default().into_iter().chain(free).min_by(f64::total_cmp)
+}
+
+/// Power of what is left in `details` beside the motion's part of it; `None` where they are too few, or the law's force hides it.
+fn power_of(details: &[&Detail]) -> Option<f64> {
+    if details.len() < LEAST_COUNT {
+        return None;
+    }
+    let law = median(details.iter().map(|detail| detail.values[1].abs()).collect());
+    let left = median(without_motion(details).into_iter().map(f64::abs).collect());
+    (law < left).then(|| (left / NORMAL_MEDIAN).powi(2))
 }
 
 /// What is left in `details` beside the motion's part of it.
@@ -189,7 +215,7 @@ mod tests {
     }
 
     /// What is found behind the nominal law's residual of two trials, over what is stated.
-    fn power_of(trials: &[ContactTrial]) -> f64 {
+    fn power_behind(trials: &[ContactTrial]) -> f64 {
         let data = Data::new(trials);
         let nominal = nominal_fit(&data, &TestContact::nominal());
         let nominal = data.fit(&nominal.model, &nominal.values, Effort::FULL);
@@ -204,7 +230,7 @@ mod tests {
             let trials = [seed, seed + 1].map(|seed| with_memory(&TestContact::PLAIN, size, seed));
             // Ten of the sensor's own power. The least of four deviations, each known to an eighth where coefficients are fewest, is a tenth too
             // small, and the noise is still a little quieter where the law hides it than below.
-            let power = power_of(&trials);
+            let power = power_behind(&trials);
             assert!((7.0..11.0).contains(&power), "{power}");
         }
     }
@@ -213,26 +239,30 @@ mod tests {
     #[test]
     fn noise_that_the_law_hides_in_contact_is_heard_in_free_motion() {
         let detail = |at: usize, group: usize, law: f64| {
-            let left = if at % 2 == 0 { 2.0 * NORMAL_MEDIAN } else { -2.0 * NORMAL_MEDIAN };
+            let left = if at.is_multiple_of(2) { 2.0 * NORMAL_MEDIAN } else { -2.0 * NORMAL_MEDIAN };
             Detail { values: [left, law, 0.0, 0.0, 0.0], group }
         };
         let in_contact = |law: f64| (0..100).map(move |at| detail(at, 2, law));
-        let level = |law: f64, free: usize| {
-            power_of_level(&(0..free).map(|at| detail(at, 0, 0.0)).chain(in_contact(law)).collect::<Vec<_>>())
+        let level = |law: f64, free: usize, has_free_motion: bool| {
+            let details: Vec<_> = (0..free).map(|at| detail(at, 0, 0.0)).chain(in_contact(law)).collect();
+            power_of_level(&details, has_free_motion)
         };
-        assert!((level(200.0, 100).unwrap() - 4.0).abs() < 1e-12);
-        assert_eq!(level(200.0, 0), None);
+        assert!((level(200.0, 100, true).unwrap() - 4.0).abs() < 1e-12);
+        assert_eq!(level(200.0, 0, false), None);
+        // What is left in contact is noise where it never leaves, and may be a misfit where free motion is too short to tell.
+        assert!((level(0.0, 0, false).unwrap() - 4.0).abs() < 1e-12);
+        assert_eq!(level(0.0, 10, true), None);
     }
 
     #[test]
     fn white_noise_is_as_stated_and_a_misfit_of_the_law_is_none() {
-        let white = power_of(&[1, 2].map(|seed| TestContact::PLAIN.trial(seed)));
+        let white = power_behind(&[1, 2].map(|seed| TestContact::PLAIN.trial(seed)));
         assert!((1.0..1.1).contains(&white), "{white}");
         // Ten times the sensor's noise is left: by the bend of the spring, and by what relaxes.
         for contact in
             [TestContact { exponent: 1.8, ..TestContact::PLAIN }, TestContact { fading: 1.5, ..TestContact::PLAIN }]
         {
-            let power = power_of(&[1, 2].map(|seed| contact.trial(seed)));
+            let power = power_behind(&[1, 2].map(|seed| contact.trial(seed)));
             assert!((1.0..1.3).contains(&power), "{power}");
         }
     }

@@ -18,7 +18,7 @@ pub struct Pair {
     pub step: f64,
     /// Parts that it is simulated in.
     pub substeps: usize,
-    /// See [`curving`]; s^2.
+    /// What the stretch of the link is taken further by, over its own acceleration, s^2.
     pub curving: f64,
     /// State after the step for each state before it.
     pub transition: [Matrix<STATES>; 2],
