@@ -3,7 +3,7 @@
 use super::binomial::clopper_pearson;
 use super::challenge_score::ChallengeScore;
 use super::recordings::table::line;
-use super::targets::{Target, statistics, targets};
+use super::targets::{Target, counts_of, statistics, targets};
 
 /// What begins the part of a README or page of the documentation that the command writes.
 pub const BEGIN: &str = "<!-- written by `palpate challenge --publish`; not by hand -->";
@@ -43,21 +43,20 @@ fn drawn(challenge: &ChallengeScore) -> String {
     text
 }
 
-/// How many cases of each other author came out right, kind by kind.
+/// How many cases of each other author came out right, kind by kind, under the kinds' own names.
 fn others(challenge: &ChallengeScore) -> String {
-    let mut text = "| another author's cases | nothing missing: no false alarm | one effect: named | the same: among answer and alternatives \
-                    | two effects: both named | outside the list: `unknown` |\n|---|---|---|---|---|---|\n"
-        .to_owned();
+    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let mut text = String::new();
     for set in &challenge.sources {
-        let counts = [
-            (set.none.n - set.none.false_alarms, set.none.n),
-            (set.single.named_rightly, set.single.n),
-            (set.single.within_rivals, set.single.n),
-            (set.pairs.named_rightly, set.pairs.n),
-            (set.outside.owned, set.outside.n),
-        ];
-        let cells = counts.map(|(hits, of)| if of > 0 { format!("{hits} of {of}") } else { "-".to_owned() });
-        text += &format!("| `{}` | {} |\n", set.name, cells.join(" | "));
+        let counts = counts_of(set);
+        if text.is_empty() {
+            let kinds = counts.iter().map(|(what, ..)| (*what).to_owned());
+            text = row(std::iter::once("another author".to_owned()).chain(kinds).collect());
+            text += "|---|---|---|---|---|---|\n";
+        }
+        let cell =
+            |(_, hits, of): &(&str, usize, usize)| if *of > 0 { format!("{hits} of {of}") } else { "-".to_owned() };
+        text += &row(std::iter::once(format!("`{}`", set.name)).chain(counts.iter().map(cell)).collect());
     }
     text + "\n"
 }

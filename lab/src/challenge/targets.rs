@@ -4,6 +4,7 @@ use palpate_cases::truth::CaseKind;
 
 use super::case_score::CaseScore;
 use super::challenge_score::ChallengeScore;
+use super::external_score::ExternalSetScore;
 use super::scored_case::ScoredCase as _;
 
 /// One line.
@@ -26,20 +27,25 @@ pub struct Target {
 pub fn external_lines(challenge: &ChallengeScore) -> Vec<Target> {
     let mut lines = Vec::new();
     for set in &challenge.sources {
-        let counts = [
-            ("no effect: no false alarm", set.none.n - set.none.false_alarms, set.none.n),
-            ("one effect: named correctly", set.single.named_rightly, set.single.n),
-            ("the same: truth among answer and alternatives", set.single.within_rivals, set.single.n),
-            ("two effects: both named and nothing else", set.pairs.named_rightly, set.pairs.n),
-            ("outside the list: reported as unknown", set.outside.owned, set.outside.n),
-        ];
         let line = |(what, hits, of): (&str, usize, usize)| {
             let what = format!("`{}` (another author), {what}", set.name);
             Target { what, hits, of, target: "", least: None }
         };
-        lines.extend(counts.into_iter().filter(|(_, _, of)| *of > 0).map(line));
+        lines.extend(counts_of(set).into_iter().filter(|(_, _, of)| *of > 0).map(line));
     }
     lines
+}
+
+/// What a correct answer is for each kind of case of another author, how many were given, and of how many cases.
+#[must_use]
+pub fn counts_of(set: &ExternalSetScore) -> [(&'static str, usize, usize); 5] {
+    [
+        ("no effect: no false alarm", set.none.n - set.none.false_alarms, set.none.n),
+        ("one effect: named correctly", set.single.named_rightly, set.single.n),
+        ("the same: truth among answer and alternatives", set.single.within_rivals, set.single.n),
+        ("two effects: both named and nothing else", set.pairs.named_rightly, set.pairs.n),
+        ("outside the list: reported as unknown", set.outside.owned, set.outside.n),
+    ]
 }
 
 /// All lines of our own cases, those without a case too.

@@ -14,6 +14,45 @@ pub fn energy(values: &[f64]) -> f64 {
     dot(values, values)
 }
 
+/// Products of each of `columns` with each (J. P. Gram), symmetric.
+#[must_use]
+pub fn gram(columns: &[Vec<f64>]) -> DMatrix<f64> {
+    let count = columns.len();
+    let mut matrix = DMatrix::zeros(count, count);
+    for row in 0..count {
+        for column in 0..=row {
+            let product = dot(&columns[row], &columns[column]);
+            (matrix[(row, column)], matrix[(column, row)]) = (product, product);
+        }
+    }
+    matrix
+}
+
+/// Stretches of `along` that a correlation ratio groups by.
+const STRETCHES: usize = 20;
+
+/// Share of the variance of `values` between stretches of `along` (the correlation ratio, eta squared: K. Pearson 1905): all of it where they
+/// follow any curve over it, and stretches over rows where they are independent of it; 0 where one does not vary.
+#[must_use]
+pub fn correlation_ratio(along: &[f64], values: &[f64]) -> f64 {
+    let [low, high] =
+        along.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(*at), high.max(*at)]);
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let mut stretches = [(0.0, 0.0); STRETCHES];
+    let mut squares = 0.0;
+    for (at, value) in along.iter().zip(values) {
+        let part = (at - low) / (high - low).max(f64::MIN_POSITIVE);
+        let (rows, sum) = &mut stretches[((part * STRETCHES as f64) as usize).min(STRETCHES - 1)];
+        (*rows, *sum) = (*rows + 1.0, *sum + value - mean);
+        squares += (value - mean).powi(2);
+    }
+    let between: f64 = stretches.iter().filter(|(rows, _)| *rows > 0.0).map(|(rows, sum)| sum * sum / rows).sum();
+    // The mean of a constant is it to rounding.
+    let rows = values.len() as f64;
+    let rounding = rows * (f64::EPSILON * rows * mean).powi(2);
+    if squares > rounding { between / squares } else { 0.0 }
+}
+
 /// Least squares of `target` on `directions`; `None` where there are none.
 #[must_use]
 pub fn solve(directions: &[(usize, Vec<f64>)], target: &[f64]) -> Option<DVector<f64>> {
@@ -41,4 +80,29 @@ pub fn solve(directions: &[(usize, Vec<f64>)], target: &[f64]) -> Option<DVector
 pub fn remove(values: &mut [f64], unit: &[f64]) {
     let part = dot(values, unit);
     values.iter_mut().zip(unit).for_each(|(value, unit)| *value -= part * unit);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_correlation_ratio_is_one_of_a_curve_and_small_of_what_goes_by_itself() {
+        let along: Vec<f64> = (0..4000).map(|row| (row as f64 * 0.01).sin()).collect();
+        // A parabola has no correlation with its argument. Within a twentieth of the way it varies by a hundredth of its variance.
+        let curve: Vec<f64> = along.iter().map(|at| at * at).collect();
+        assert!(correlation_ratio(&along, &curve) > 0.98);
+        // A tone of another period: 20 stretches over 4000 rows, which are not independent.
+        let tone: Vec<f64> = (0..4000).map(|row| (row as f64 * 1.618).cos()).collect();
+        assert!(correlation_ratio(&along, &tone) < 0.02);
+        assert_eq!(correlation_ratio(&along, &vec![0.3; 4000]), 0.0);
+        assert_eq!(correlation_ratio(&[], &[]), 0.0);
+    }
+
+    #[test]
+    fn products_of_columns_are_those_of_the_matrix() {
+        let columns = [vec![1.0, 2.0, 3.0], vec![0.5, -1.0, 4.0]];
+        let matrix = DMatrix::from_fn(3, 2, |row, column| columns[column][row]);
+        assert_eq!(gram(&columns), matrix.transpose() * matrix);
+    }
 }

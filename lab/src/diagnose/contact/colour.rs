@@ -9,9 +9,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::criteria::LEAST_PART_OF_COEFFICIENTS;
+use super::criteria::{LARGEST_SHARE_BY_PLACE, LEAST_PART_OF_COEFFICIENTS};
 use super::fit::Fit;
 use super::trial::ContactTrial;
+use crate::diagnose::linalg::correlation_ratio;
 
 /// Low-pass filter of four vanishing moments (I. Daubechies, *Comm. Pure Appl. Math.* 41, 1988).
 const FILTER: [f64; 8] = [
@@ -40,13 +41,10 @@ pub fn noise_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], resid
     let mut pyramids: Vec<Pyramid> = (0..trials.len())
         .map(|number| Pyramid::of(&trials[number], fit, number, &noise[number], &residual[number]))
         .collect();
-    let free: usize =
-        pyramids.iter().map(|pyramid| pyramid.groups.iter().filter(|group| FREE.contains(group)).count()).sum();
-    let rows: usize = trials.iter().map(ContactTrial::len).sum();
-    let has_free_motion = free as f64 >= LEAST_PART_OF_COEFFICIENTS * rows as f64;
+    let has_free_motion = has_free_motion(trials, fit);
     let (mut power, mut share, mut last) = (0.0, 1.0, 1.0);
     loop {
-        let details: Vec<Detail> = pyramids.iter_mut().flat_map(Pyramid::descend).collect();
+        let details: Vec<Detail> = pyramids.iter_mut().flat_map(|pyramid| pyramid.descend(has_free_motion)).collect();
         let Some(level) = power_of_level(&details, has_free_motion) else { break };
         share *= 0.5;
         power += share * level;
@@ -115,8 +113,9 @@ impl Pyramid {
         2 * usize::from(!is_free) + self.groups[middle] % 2
     }
 
-    /// The details of the next level; what is left are the means.
-    fn descend(&mut self) -> Vec<Detail> {
+    /// The details of the next level; what is left are the means. Where the tool is free before the surface, a detail is of free motion that
+    /// lies in it as a whole, else what it is in its middle.
+    fn descend(&mut self, has_free_motion: bool) -> Vec<Detail> {
         let count = (self.columns[0].len() + 2).saturating_sub(FILTER.len()) / 2;
         let reach = FILTER.len() as f64 - 1.0;
         let detail = |column: &Vec<f64>, at: usize| -> f64 {
@@ -128,7 +127,10 @@ impl Pyramid {
         let middle = |at: usize| ((wide * at as f64 + 0.5 * reach * (wide - 1.0)) as usize).min(self.groups.len() - 1);
         let details = (0..count).map(|at| Detail {
             values: std::array::from_fn(|column| detail(&self.columns[column], at)),
-            group: self.group(wide as usize * at, middle(at), (reach * (wide - 1.0)) as usize),
+            group: match has_free_motion {
+                true => self.group(wide as usize * at, middle(at), (reach * (wide - 1.0)) as usize),
+                false => self.groups[middle(at)],
+            },
         });
         let details = details.collect();
         for column in &mut self.columns {
@@ -139,20 +141,40 @@ impl Pyramid {
     }
 }
 
-/// Power of the noise at a level; `None` where nothing tells it. In contact it is asked where the law hides it neither slow nor fast: a misfit
-/// that is louder than the law at some speed may be all that is left at another. In free motion no law hides anything; where there is some, but too
-/// short for this level, contact alone does not tell noise from a misfit.
+/// Whether there is free motion in which nothing acts on the tool: a law that is wrong can put its surface far into the contact, and before it
+/// the force then follows the position (correlation ratio).
+fn has_free_motion(trials: &[ContactTrial], fit: &Fit) -> bool {
+    let (mut rows, mut all) = (0, 0);
+    for (number, trial) in trials.iter().enumerate() {
+        let surface = fit.model.surface(&fit.values, number);
+        let free = |column: &[f64]| -> Vec<f64> {
+            let rows = column.iter().zip(&trial.position).filter(|(_, position)| **position <= surface);
+            rows.map(|(value, _)| *value).collect()
+        };
+        let (position, force) = (free(&trial.position), free(&trial.force));
+        if fit.model.bilateral || correlation_ratio(&position, &force) > LARGEST_SHARE_BY_PLACE {
+            return false;
+        }
+        (rows, all) = (rows + position.len(), all + trial.len());
+    }
+    rows as f64 >= LEAST_PART_OF_COEFFICIENTS * all as f64
+}
+
+/// Power of the noise at a level; `None` where nothing tells it. A misfit that is louder than the law at some speed may be all that is left
+/// at another: in contact the noise is asked where the law hides it neither slow nor fast. In free motion no law hides anything; where there is
+/// some, but too short for this level, contact alone does not tell noise from a misfit.
 fn power_of_level(details: &[Detail], has_free_motion: bool) -> Option<f64> {
     let own = |group: usize| -> Vec<&Detail> { details.iter().filter(|detail| detail.group == group).collect() };
-    let least_part = LEAST_PART_OF_COEFFICIENTS * details.len() as f64;
-    let asked = |group: &usize| own(*group).len() as f64 >= least_part;
-    let free: Vec<f64> = FREE.into_iter().filter(asked).filter_map(|group| power_of(&own(group))).collect();
-    if has_free_motion && free.is_empty() {
-        return None;
+    let asked = |group: &usize| own(*group).len() as f64 >= LEAST_PART_OF_COEFFICIENTS * details.len() as f64;
+    let of_all = |groups: &[usize]| -> Option<Vec<f64>> {
+        groups.iter().copied().filter(asked).map(|group| power_of(&own(group))).collect()
+    };
+    if !has_free_motion {
+        return of_all(&[FREE, IN_CONTACT].concat())?.into_iter().min_by(f64::total_cmp);
     }
-    let in_contact: Option<Vec<f64>> =
-        IN_CONTACT.into_iter().filter(asked).map(|group| power_of(&own(group))).collect();
-    in_contact.unwrap_or_default().into_iter().chain(free).min_by(f64::total_cmp)
+    let free: Vec<f64> = FREE.into_iter().filter(asked).filter_map(|group| power_of(&own(group))).collect();
+    let least = free.into_iter().min_by(f64::total_cmp)?;
+    Some(of_all(&IN_CONTACT).unwrap_or_default().into_iter().fold(least, f64::min))
 }
 
 /// Power of what is left in `details` beside the motion's part of it; `None` where they are too few, or the law's force hides it.
@@ -194,6 +216,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 mod tests {
     use super::super::data::Data;
     use super::super::fit::Effort;
+    use super::super::model::index;
     use super::super::nominal::nominal_fit;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
@@ -252,6 +275,17 @@ mod tests {
         // What is left in contact is noise where it never leaves, and may be a misfit where free motion is too short to tell.
         assert!((level(0.0, 0, false).unwrap() - 4.0).abs() < 1e-12);
         assert_eq!(level(0.0, 10, true), None);
+    }
+
+    #[test]
+    fn before_a_surface_that_lies_within_the_contact_nothing_is_free() {
+        let trials = [1, 2].map(|seed| TestContact::PLAIN.trial(seed));
+        let data = Data::new(&trials);
+        let mut fit = nominal_fit(&data, &TestContact::nominal());
+        assert!(has_free_motion(&trials, &fit));
+        // Four millimetres of eight: before it the spring's force is all that is left.
+        fit.values[index::SURFACE] = 4e-3;
+        assert!(!has_free_motion(&trials, &fit));
     }
 
     #[test]

@@ -71,6 +71,8 @@ thresholds! { "contact";
     SEEN_BY_BOTH = 0.8, "1", chosen;
     /// Share of all wavelet coefficients that what the tool does has to have to be asked for the noise's power.
     LEAST_PART_OF_COEFFICIENTS = 0.05, "1", chosen;
+    /// Share of the force's variance before the surface that the position may explain: with more than half of it the tool is not free there.
+    LARGEST_SHARE_BY_PLACE = 0.5, "1", derived;
     /// Share of a wave's variance that place and direction of the tool have from which the wave is not told from a law of the motion: half.
     LARGEST_SHARE_IN_STEP = 0.5, "1", derived;
     /// Part by which a line of the spectrum may be off the frequency that it is known by: twice what mains are.

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::data::Data;
 use super::model::ContactModel;
 use super::range::Range;
-use crate::diagnose::linalg::{dot, energy};
+use crate::diagnose::linalg::{dot, energy, gram};
 
 /// A fitted model.
 #[derive(Debug, Clone)]
@@ -114,13 +114,7 @@ struct Normal {
 impl Normal {
     fn of(columns: Vec<Vec<f64>>, residual: &[f64], ranges: &[Range], free: &[usize], values: &[f64]) -> Self {
         let count = columns.len();
-        let mut matrix = DMatrix::zeros(count, count);
-        for row in 0..count {
-            for column in 0..=row {
-                let product = dot(&columns[row], &columns[column]);
-                (matrix[(row, column)], matrix[(column, row)]) = (product, product);
-            }
-        }
+        let mut matrix = gram(&columns);
         let mut right = DVector::from_fn(count, |row, _| -dot(&columns[row], residual));
         for (row, &at) in free.iter().enumerate() {
             if let Some((mean, deviation)) = ranges[at].prior {

@@ -7,7 +7,7 @@ use super::fit::Fit;
 use super::held_out::Folds;
 use super::model::ContactModel;
 use super::rest::Rest;
-use crate::diagnose::linalg::{dot, energy};
+use crate::diagnose::linalg::{dot, energy, gram};
 use crate::effects::{LEARNED_KNOTS, geometric};
 
 /// Rows that a spline is fitted to.
@@ -131,15 +131,8 @@ impl Spline {
 impl Normal {
     fn of(columns: &[Vec<f64>], target: &[f64]) -> Self {
         let count = columns.len();
-        let mut matrix = DMatrix::zeros(count, count);
-        for row in 0..count {
-            for column in 0..=row {
-                let product = dot(&columns[row], &columns[column]);
-                (matrix[(row, column)], matrix[(column, row)]) = (product, product);
-            }
-        }
         let right = DVector::from_iterator(count, columns.iter().map(|column| dot(column, target)));
-        Self { matrix, right, squares: energy(target) }
+        Self { matrix: gram(columns), right, squares: energy(target) }
     }
 
     /// Squares of what `forces` leave of the target.

@@ -7,7 +7,7 @@ use super::linearisation::Linearisation;
 use super::model::Model;
 use super::noise::Noise;
 use super::range::{Range, Step};
-use crate::diagnose::linalg::{dot, energy};
+use crate::diagnose::linalg::{dot, energy, gram};
 
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,15 +70,8 @@ struct Normal {
 impl Normal {
     fn of(columns: &[Vec<f64>], residual: &[f64]) -> Self {
         let count = columns.len();
-        let mut matrix = DMatrix::zeros(count, count);
-        for row in 0..count {
-            for column in 0..=row {
-                let product = dot(&columns[row], &columns[column]);
-                (matrix[(row, column)], matrix[(column, row)]) = (product, product);
-            }
-        }
         let right = DVector::from_fn(count, |row, _| -dot(&columns[row], residual));
-        Self { matrix, right, energy: energy(residual) }
+        Self { matrix: gram(columns), right, energy: energy(residual) }
     }
 
     /// The same with what is known of `values` beforehand, each prior being one row more.

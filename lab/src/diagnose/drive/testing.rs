@@ -4,8 +4,15 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::law::{DriveLaw, Link, Side};
 use super::scales::Scales;
 use super::trial::DriveTrial;
+
+/// A pair of bodies with the encoder on its motor, without friction.
+pub fn pair_law(stiffness: f64) -> (DriveLaw, Link) {
+    let link = Link { stiffness, damping: 0.0, play: 0.0, load_share: 0.3, load_viscous: 0.0, encoder: Side::Motor };
+    (DriveLaw { link: Some(link), ..DriveLaw::nominal(0.6, 0.0, 0.0) }, link)
+}
 
 /// Sizes of a recording of [`TestDrive::PLAIN`], by and large.
 pub const SCALES: Scales = Scales {

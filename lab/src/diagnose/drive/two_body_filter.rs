@@ -144,14 +144,8 @@ fn unknown_pair(trial: &DriveTrial, link: &Link, encoder: f64, effort: f64) -> M
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::drive::testing::pair_law;
     use crate::diagnose::drive::two_mass_system::Coupled;
-
-    /// A pair with the encoder on its motor, without friction.
-    fn pair_law(stiffness: f64) -> (DriveLaw, Link) {
-        let link =
-            Link { stiffness, damping: 0.0, play: 0.0, load_share: 0.3, load_viscous: 0.0, encoder: Side::Motor };
-        (DriveLaw { link: Some(link), ..DriveLaw::nominal(0.6, 0.0, 0.0) }, link)
-    }
 
     /// A load that is pushed by a force of its own, seen by an encoder of 1 um on the motor alone.
     #[test]

@@ -84,14 +84,7 @@ pub fn advance_pair(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::drive::law::Side;
-
-    /// A pair with the encoder on its motor, without friction.
-    fn pair_law(stiffness: f64) -> (DriveLaw, Link) {
-        let link =
-            Link { stiffness, damping: 0.0, play: 0.0, load_share: 0.3, load_viscous: 0.0, encoder: Side::Motor };
-        (DriveLaw { link: Some(link), ..DriveLaw::nominal(0.6, 0.0, 0.0) }, link)
-    }
+    use crate::diagnose::drive::testing::pair_law;
 
     /// Steps of a millisecond by a third of a radian of the pair's own swing each, as one substep takes.
     #[test]
