@@ -68,12 +68,12 @@ pub struct Clusters<'a> {
 #[must_use]
 pub fn spread(residual: &[f64], columns: &[Vec<f64>], priors: &[f64], power: f64, rows: Clusters<'_>) -> Spread {
     let count = columns.len();
-    // Values of unlike size: each direction is taken as long as one.
-    let sizes: Vec<f64> = columns
-        .iter()
-        .zip(priors)
-        .map(|(column, prior)| (dot(column, column) + prior).sqrt().max(f64::MIN_POSITIVE))
-        .collect();
+    // Values of unlike size: each direction is taken as long as one. A value that is held changes nothing and takes nothing from the others.
+    let size = |(column, prior): (&Vec<f64>, &f64)| {
+        let size = (dot(column, column) + prior).sqrt();
+        if size > 0.0 { size } else { 1.0 }
+    };
+    let sizes: Vec<f64> = columns.iter().zip(priors).map(size).collect();
     let stretches = stretches(residual, columns, &sizes, rows.stretch);
     let mut curvature =
         DMatrix::from_diagonal(&DVector::from_fn(count, |at, _| 1e-9 + priors[at] / (sizes[at] * sizes[at])));
@@ -209,6 +209,20 @@ mod tests {
         // A prior three times as sharp as the data halves the width.
         let found = half(&vec![0.0; rows], 3.0 * rows as f64);
         assert!((found / plain - 0.5).abs() < 1e-6, "{found} {plain}");
+    }
+
+    /// An effort's delay is held at zero beside its lag: the lag is no less certain for it.
+    #[test]
+    fn a_value_that_is_held_takes_nothing_from_the_interval_of_another() {
+        let rows = 400;
+        let residual: Vec<f64> = (0..rows).map(|row| if row % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let stretch = in_sixteen(rows);
+        let told = Clusters { stretch: &stretch, place: &[] };
+        let alone = spread(&residual, &[vec![1.0; rows]], &[0.0], 1.0, told);
+        let beside = spread(&residual, &[vec![0.0; rows], vec![1.0; rows]], &[0.0; 2], 1.0, told);
+        assert!((alone.half_widths[0] * (rows as f64).sqrt() / NORMAL_97_5 - 1.0).abs() < 1e-6);
+        assert!((beside.half_widths[1] / alone.half_widths[0] - 1.0).abs() < 1e-9, "{:?}", beside.half_widths);
+        assert!(beside.half_widths[0] > 1e4, "nothing is known of what is held");
     }
 
     /// A law that is wrong by one part at each of fifty places and that is visited over and over: stretches agree about it, places do not.

@@ -90,6 +90,8 @@ pub enum Limit {
     ResolvableLength,
     /// A way in the contact that is no longer than the deepest one, or the recording shows its beginning alone.
     VisitedDepth,
+    /// An instant of the trial at which the law jumps: between two rows nothing tells one from another.
+    InstantOfJump,
 }
 
 impl Parameter {

@@ -5,12 +5,22 @@ use super::fit::Fit;
 use super::rest::Rest;
 use crate::diagnose::interval::{Clusters, Intervals, spread};
 use crate::diagnose::jackknife::stretch_of_rows;
+use crate::diagnose::linalg::energy;
+use crate::effects::Limit;
+
+/// Squared deviations that a jump changes from its instant to an end of its 95 % interval (J. Bai, *Rev. Econ. Stat.* 79, 1997, whose limit
+/// is the place of the greatest value of a Brownian motion with drift).
+const JUMP_95: f64 = 11.0;
+
+/// Halvings in which an end is sought between the instant and the end of its range: a thousandth of a row of a million.
+const HALVINGS: usize = 30;
 
 /// The interval of each value of `fit`.
 #[must_use]
 pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
     let ranges = fit.model.ranges(&fit.values);
-    let free: Vec<usize> = (0..fit.values.len()).filter(|at| ranges[*at].free).collect();
+    let jumps = jumps(fit);
+    let free: Vec<usize> = (0..fit.values.len()).filter(|at| ranges[*at].free && !jumps.contains(at)).collect();
     let columns = data.columns(&fit.model, &fit.values, &ranges, &free, &rest.rows);
     let priors: Vec<f64> =
         free.iter().map(|at| ranges[*at].prior.map_or(0.0, |(_, sigma)| (ranges[*at].size / sigma).powi(2))).collect();
@@ -36,5 +46,84 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
         };
         all[at] = [low.max(range.low), high.min(range.high)];
     }
+    for at in jumps {
+        all[at] = [ranges[at].low, ranges[at].high].map(|bound| end_of_jump(data, fit, rest, at, bound));
+    }
     Intervals { ends: all, covariance }
+}
+
+/// Which values of `fit` are instants at which its law jumps.
+fn jumps(fit: &Fit) -> Vec<usize> {
+    let terms = fit.model.terms.iter().enumerate().flat_map(|(nth, term)| {
+        let first = fit.model.first_value_of(nth);
+        let own = term.parameters().iter().enumerate();
+        own.filter(|(_, parameter)| parameter.limit == Limit::InstantOfJump).map(move |(offset, _)| first + offset)
+    });
+    terms.collect()
+}
+
+/// The end of the interval of the instant `at` on the side of `bound`, no farther than that: where the rows that lie between have changed
+/// by [`JUMP_95`] squared deviations.
+///
+/// A jump has no tangent in its instant, and its instant converges with the number of rows, faster than all other values and apart from
+/// them: they are held. Rows that remember count as so many fewer. Where nothing is touched, nothing tells: a jump between two contacts
+/// lies anywhere between them.
+fn end_of_jump(data: &Data<'_>, fit: &Fit, rest: &Rest, at: usize, bound: f64) -> f64 {
+    let changed = |there: f64| {
+        let mut moved = fit.values.clone();
+        moved[at] = there;
+        let after = data.weighted_residual(&fit.model, &moved);
+        let between: Vec<f64> = after.iter().zip(&rest.rows).map(|(after, before)| after - before).collect();
+        energy(&between) / (rest.power * rest.correlated_rows)
+    };
+    let (mut within, mut beyond) = (fit.values[at], bound);
+    if changed(beyond) < JUMP_95 {
+        return bound;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (within + beyond);
+        if changed(middle) < JUMP_95 { within = middle } else { beyond = middle }
+    }
+    beyond
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{FORCE_NOISE, RATE, TestContact};
+    use super::*;
+
+    /// K rises by a twelfth at the first row at which the tool is on its way in.
+    #[test]
+    fn the_instant_of_a_jump_is_known_as_well_as_the_rows_after_it_tell() {
+        let instant = 4.0;
+        let (model, values) = TestContact::PLAIN.law_with("time_varying_stiffness", 1, &[1.0 / 12.0, instant]);
+        let trials = [TestContact::PLAIN.trial(1)];
+        let data = Data::new(&trials);
+        let at = values.len() - 1;
+        let fit = Fit { model, values, energy: 0.0 };
+        let rest = Rest {
+            rows: data.weighted_residual(&fit.model, &fit.values),
+            power: 1.0,
+            over_sensors: 1.0,
+            correlated_rows: 1.0,
+        };
+        let [low, high] = intervals(&data, &fit, &rest).ends[at];
+        // By hand: what the jump adds to each row in contact, from the first after it on.
+        let stiffness = fit.values[0] / 12.0;
+        let told = |rows: Vec<usize>| {
+            let mut sum = 0.0;
+            rows.into_iter().find(|row| {
+                sum += (stiffness * (trials[0].position[*row] - fit.values[2]).max(0.0) / FORCE_NOISE).powi(2);
+                sum >= JUMP_95
+            })
+        };
+        let first = (instant * RATE) as usize;
+        let [after, before] = [(first + 1..trials[0].len()).collect(), (0..=first).rev().collect()]
+            .map(|rows| told(rows).unwrap() as f64 / RATE);
+        assert!(
+            (high - after).abs() <= 1.5 / RATE && (low - before).abs() <= 1.5 / RATE,
+            "{low} {high}, {before} {after}"
+        );
+        assert!(low < instant && instant < high);
+    }
 }

@@ -93,6 +93,7 @@ impl ContactModel {
             Limit::RepeatedCycles => low = low.max(LEAST_CYCLES / scales.duration_s),
             Limit::ResolvableLength => low = low.max(scales.resolution),
             Limit::VisitedDepth => high = high.min(self.longest_way()),
+            Limit::InstantOfJump => high = high.min(scales.duration_s),
             Limit::BoundsOnly => {}
         }
         let by_factors = parameter.low >= 0.0 && parameter.high.is_infinite() && value > 0.0;

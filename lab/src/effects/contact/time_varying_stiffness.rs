@@ -35,7 +35,11 @@ static SPEC: EffectSpec = EffectSpec {
         Form {
             name: "jump",
             equation: "K(t) = K before instant, K (1 + change) after it",
-            parameters: &[CHANGE, Parameter::new("instant", SECOND, "since the trial began", 0.0, f64::INFINITY)],
+            parameters: &[
+                CHANGE,
+                Parameter::new("instant", SECOND, "since the trial began", 0.0, f64::INFINITY)
+                    .within(Limit::InstantOfJump),
+            ],
         },
         Form {
             name: "settling",
