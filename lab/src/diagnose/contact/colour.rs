@@ -5,7 +5,8 @@
 //! velocity and acceleration at that level (incoherent power: J. S. Bendat and A. G. Piersol, *Random Data*, 2010): the least of what is found
 //! in free motion and in contact, slow and fast, because noise is there whatever the tool does, and a law's misfit is not. From the level on at
 //! which the law's own force is louder than what is left, a misfit could be all of it: contact is not asked, and free motion, in which no law of
-//! the contact has a force, is. Where nothing is left to be asked the noise is taken to go on as above.
+//! the contact has a force, is. Where nothing is left to be asked the noise is taken to go on as above; in free motion it is no less than what
+//! is left there over the longest stretches of which there are enough.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -50,7 +51,52 @@ pub fn noise_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], resid
         power += share * level;
         last = level;
     }
-    (power + share * last).max(1.0)
+    let free = if has_free_motion { free_power(trials, fit, noise, residual) } else { 0.0 };
+    (power + share * last).max(free).max(1.0)
+}
+
+/// Stretches of free motion whose means are taken off: a power is known to a quarter by as many.
+const LEAST_STRETCHES: usize = 32;
+
+/// Fewest rows whose mean is taken off.
+const SHORTEST_STRETCH: usize = 8;
+
+/// Mean square in free motion over what is stated, of what is left beside the mean of each of [`LEAST_STRETCHES`] stretches or more, and beside
+/// the motion. Details are counted where they lie in free motion as a whole: those of a slow memory are longer than it, and this is not. The
+/// lesser one near the surface and far from it: what pulls the tool near it, as a neck does, is no noise.
+fn free_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residual: &[Vec<f64>]) -> f64 {
+    let free = |number: usize, row: usize| {
+        let is_out = trials[number].position[row] <= fit.model.surface(&fit.values, number);
+        is_out && noise[number][row].is_finite()
+    };
+    let rows: Vec<(usize, usize)> = (0..trials.len())
+        .flat_map(|number| (0..trials[number].len()).map(move |row| (number, row)))
+        .filter(|(number, row)| free(*number, *row))
+        .collect();
+    let runs = rows.chunk_by(|before, after| before.0 == after.0 && before.1 + 1 == after.1);
+    let longest = (rows.len() / LEAST_STRETCHES).max(SHORTEST_STRETCH);
+    let height = |number: usize, row: usize| fit.model.surface(&fit.values, number) - trials[number].position[row];
+    let usual = median(rows.iter().map(|(number, row)| height(*number, *row)).collect());
+    let mut sides = [Vec::new(), Vec::new()];
+    for stretch in runs.flat_map(|run| run.chunks(longest)).filter(|stretch| stretch.len() >= SHORTEST_STRETCH) {
+        let of_row = |&(number, row): &(usize, usize)| -> [f64; COLUMNS] {
+            let trial = &trials[number];
+            let left = residual[number][row] / noise[number][row].sqrt();
+            [left, 0.0, trial.position[row], trial.velocity[row], trial.acceleration[row]]
+        };
+        let values: Vec<[f64; COLUMNS]> = stretch.iter().map(of_row).collect();
+        let mean = |column: usize| values.iter().map(|row| row[column]).sum::<f64>() / values.len() as f64;
+        let means: [f64; COLUMNS] = std::array::from_fn(mean);
+        let side = usize::from(stretch.iter().all(|(number, row)| height(*number, *row) > usual));
+        let beside_mean = |row: &[f64; COLUMNS]| std::array::from_fn(|column| row[column] - means[column]);
+        sides[side].extend(values.iter().map(|row| Detail { values: beside_mean(row), group: side }));
+    }
+    let power = |details: &Vec<Detail>| {
+        let left = without_motion(&details.iter().collect::<Vec<_>>());
+        left.iter().map(|left| left * left).sum::<f64>() / left.len() as f64
+    };
+    let enough = sides.iter().filter(|details| details.len() >= LEAST_COUNT).map(power);
+    enough.min_by(f64::total_cmp).unwrap_or(0.0)
 }
 
 /// One trial's columns at a level, and what the tool does at each of its rows.
@@ -225,9 +271,14 @@ mod tests {
 
     /// `contact` with noise beside the sensor's white one, of deviation `size` and a memory of one row.
     fn with_memory(contact: &TestContact, size: f64, seed: u64) -> ContactTrial {
+        with_a_memory_of(1.0, contact, size, seed)
+    }
+
+    /// The same with a memory of so many `rows`.
+    fn with_a_memory_of(rows: f64, contact: &TestContact, size: f64, seed: u64) -> ContactTrial {
         let mut recording = contact.recording(seed);
         let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed + 1000);
-        let kept = f64::exp(-1.0);
+        let kept = f64::exp(-1.0 / rows);
         let mut noise = 0.0;
         for force in recording.force.as_mut().unwrap() {
             let new: f64 = StandardNormal.sample(&mut random);
@@ -256,6 +307,23 @@ mod tests {
             let power = power_behind(&trials);
             assert!((7.0..11.0).contains(&power), "{power}");
         }
+    }
+
+    /// Five rows of memory, and free motion in pieces shorter than what details of that memory need: the whole power is ten of the sensor's.
+    #[test]
+    fn a_memory_longer_than_the_details_of_free_motion_is_heard_in_it() {
+        let trials = [1, 2].map(|seed| with_a_memory_of(5.0, &TestContact::PLAIN, 3.0 * FORCE_NOISE, seed));
+        let power = power_behind(&trials);
+        assert!((7.0..12.0).contains(&power), "{power}");
+        // A neck that pulls near the surface, and the bend of a spring, are no noise: white noise stays what it is.
+        let mut pulled = [1, 2].map(|seed| TestContact::PLAIN.recording(seed));
+        for recording in &mut pulled {
+            for (force, position) in recording.force.as_mut().unwrap().iter_mut().zip(&recording.position) {
+                *force -= if *position < 0.0 { 10.0 * FORCE_NOISE * (1.0 + position / 5e-4).max(0.0) } else { 0.0 };
+            }
+        }
+        let power = power_behind(&pulled.each_ref().map(TestContact::seen));
+        assert!((1.0..1.3).contains(&power), "{power}");
     }
 
     /// A level at which the law's force is a hundred times what is left in contact: free motion, with twice the stated deviation, is asked alone.
