@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use super::acting_force::{CARRIED_BY_THE_DRIVE, as_it_acted, sensor_effects};
+use super::acting_force::{CARRIED_BY_THE_DRIVE, as_it_acted, by_the_law, sensor_effects};
 use super::check::Finding;
 use super::contact;
 use super::contact::circumstances::Circumstances;
@@ -71,7 +71,9 @@ impl Recorded<'_> {
             let contact = self.contact(&[], &refuted)?;
             let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
             let acted = acted.as_deref().unwrap_or(self.trials);
-            let channels = Channels { contact, drive: self.drive(acted)?, refuted: refuted.clone() };
+            let by_the_law = contact.as_ref().and_then(|contact| by_the_law(contact, acted));
+            let felt = self.likelier(acted, by_the_law.as_deref())?;
+            let channels = Channels { contact, drive: self.drive(felt)?, refuted: refuted.clone() };
             let anew = self.refuted_by_the_drive(&channels, acted)?;
             if anew.is_empty() {
                 break channels;
@@ -97,15 +99,25 @@ impl Recorded<'_> {
         if sensors.is_empty() || is_complete(channels.drive.as_ref()) || channels.drive.is_none() {
             return Ok(Vec::new());
         }
-        let likelihood = |drive: Option<(Vec<DriveTrial>, NominalDrive)>| {
-            drive.and_then(|(trials, nominal)| drive::identification::nominal_likelihood(&trials, &nominal))
-        };
         // A search takes long: it is asked where the nominal law fits better already.
-        if likelihood(self.prepared(self.trials)?) <= likelihood(self.prepared(acted)?) {
+        if self.nominal_likelihood(self.trials)? <= self.nominal_likelihood(acted)? {
             return Ok(Vec::new());
         }
         let as_shown = self.drive(self.trials)?;
         Ok(if is_complete(as_shown.as_ref()) { sensors } else { Vec::new() })
+    }
+
+    /// Of the `first` trials and `others` those under whose force the drive's refitted nominal law is likelier.
+    fn likelier<'b>(&self, first: &'b [Recording], others: Option<&'b [Recording]>) -> Result<&'b [Recording]> {
+        let Some(others) = others else { return Ok(first) };
+        let is_better = self.nominal_likelihood(others)? > self.nominal_likelihood(first)?;
+        Ok(if is_better { others } else { first })
+    }
+
+    /// ln of the likelihood of `trials` under the drive's refitted nominal law, nats; `None` where they show no motion of a drive.
+    fn nominal_likelihood(&self, trials: &[Recording]) -> Result<Option<f64>> {
+        let drive = self.prepared(trials)?;
+        Ok(drive.and_then(|(trials, nominal)| drive::identification::nominal_likelihood(&trials, &nominal)))
     }
 
     /// The contact, by force and position alone; `sensors` is what the drive found of the force sensor.
