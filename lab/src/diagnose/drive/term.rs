@@ -188,7 +188,21 @@ impl Term {
     /// Whether a value of it ended where its search did, of those values that make it what it is.
     #[must_use]
     pub fn is_at_end(&self, values: &[f64], scales: &Scales) -> bool {
-        let telling: &[usize] = match self {
+        let ranges = self.ranges(scales);
+        self.telling(scales).iter().any(|at| ranges[*at].is_at_end(values[*at]))
+    }
+
+    /// Whether the 95 % interval of a value that makes it what it is, of those in `ends`, is all of the value's range: the recordings do not
+    /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923).
+    #[must_use]
+    pub fn is_undetermined(&self, ends: &[[f64; 2]], scales: &Scales) -> bool {
+        let ranges = self.ranges(scales);
+        self.telling(scales).iter().any(|at| ends[*at][0] <= ranges[*at].low && ends[*at][1] >= ranges[*at].high)
+    }
+
+    /// Which of its values make it what it is.
+    const fn telling(&self, scales: &Scales) -> &'static [usize] {
+        match self {
             Self::Coulomb
             | Self::EffortLag
             | Self::LoadFriction
@@ -204,9 +218,7 @@ impl Term {
             Self::Compliance(_) => &[0, 2],
             Self::Play(_) => &[2, 3],
             _ => &[],
-        };
-        let ranges = self.ranges(scales);
-        telling.iter().any(|at| ranges[*at].is_at_end(values[*at]))
+        }
     }
 
     /// Whether a value of it sets its shape, beside its size.

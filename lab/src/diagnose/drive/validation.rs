@@ -1,5 +1,5 @@
-//! Which terms stand: those that rows confirm which their values were not fitted to (cross-validation), and whose gain is more than what
-//! innovations that remember would give to a term that is not there.
+//! Which terms stand: those that rows confirm which their values were not fitted to (cross-validation), whose gain is more than what
+//! innovations that remember would give to a term that is not there, and whose values the recordings determine.
 
 use super::criteria::{COMPARISONS, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_HELD_OUT_SHARE};
 use super::fit::Fit;
@@ -51,8 +51,11 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
         let uncertainty = intervals(&search.data, &fit);
         let comparisons: Vec<RobustRatio> =
             without.iter().zip(&told).map(|((less, _), at)| RobustRatio::of(&fit, less, *at, &uncertainty)).collect();
+        let is_undetermined =
+            |at: usize| fit.model.terms[at].is_undetermined(&uncertainty.ends[fit.model.values_of(at)], &search.scales);
         let weakest = (0..told.len())
-            .filter(|nth| !comparisons[*nth].is_decisive() && !carries(&fit.model.terms[told[*nth]]))
+            .filter(|nth| !comparisons[*nth].is_decisive() || is_undetermined(told[*nth]))
+            .filter(|nth| !carries(&fit.model.terms[told[*nth]]))
             .min_by(|a, b| comparisons[*a].gain.total_cmp(&comparisons[*b].gain));
         if let Some(nth) = weakest {
             fit = without[nth].0.clone();
