@@ -9,7 +9,7 @@
 //! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
 //! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
 //! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`], [`links`] and [`selection`] choose what stands beside it by
-//! the [`criteria`]. [`held_out`], [`interval`], [`validation`], [`lack_of_fit`] and [`alternatives`] are the evidence, of which
+//! the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`] and [`alternatives`] are the evidence, of which
 //! [`judgement`] makes the [`outcome`]; [`outside_force`] finds stretches in which something else pushes, and [`identification`] is the
 //! way from trials to the answer.
 
@@ -20,6 +20,7 @@ pub mod dry_friction;
 pub mod expected_noise;
 pub mod filter;
 pub mod fit;
+pub mod halves;
 pub mod held_out;
 pub mod identification;
 pub mod innovations;

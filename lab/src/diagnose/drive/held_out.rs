@@ -1,6 +1,7 @@
 //! What a model leaves of rows that its values were not fitted to.
 
 use super::fit::Fit;
+use super::halves::{half_of, parts};
 use super::levenberg_marquardt::search_values;
 use super::likelihood::Data;
 use super::missing_force::missing_force;
@@ -25,10 +26,6 @@ pub struct HeldOut {
     pub density: f64,
 }
 
-/// Parts of a trial, and rows that one holds at the least.
-const PARTS: usize = 4;
-const LEAST_ROWS: usize = 200;
-
 /// Steps of the search on a half, from the values of the whole.
 const STEPS: usize = 5;
 
@@ -37,11 +34,10 @@ impl Folds {
     #[must_use]
     pub fn of(trials: &[DriveTrial]) -> Self {
         let mut folds = Self { halves: [Vec::new(), Vec::new()], places: [Vec::new(), Vec::new()] };
-        for (number, trial) in trials.iter().enumerate() {
-            let parts = (trial.len() / LEAST_ROWS).clamp(2, PARTS);
+        for (number, (trial, parts)) in trials.iter().zip(parts(trials)).enumerate() {
             for part in 0..parts {
                 let [start, end] = [part, part + 1].map(|part| part * trial.len() / parts);
-                let half = (number + part) % 2;
+                let half = half_of(number, part);
                 folds.places[half].push((number, start));
                 folds.halves[half].push(trial.slice(start..end));
             }
@@ -96,11 +92,11 @@ mod tests {
     use super::*;
     use crate::diagnose::drive::testing::{SCALES, TestDrive};
 
-    /// `trial`, the `number`th, with a load of 0.3 N in the parts that `loaded` names: the effort bears it.
-    fn with_load(mut trial: DriveTrial, loaded: &dyn Fn(usize) -> bool) -> DriveTrial {
+    /// `trial` with a load of 0.3 N in those of its `parts` that `loaded` names: the effort bears it.
+    fn with_load(mut trial: DriveTrial, parts: usize, loaded: &dyn Fn(usize) -> bool) -> DriveTrial {
         let rows = trial.effort.len();
         for (row, effort) in trial.effort.iter_mut().enumerate() {
-            *effort += if loaded(PARTS * row / rows) { 0.3 } else { 0.0 };
+            *effort += if loaded(parts * row / rows) { 0.3 } else { 0.0 };
         }
         trial
     }
@@ -109,7 +105,8 @@ mod tests {
     #[test]
     fn what_lives_in_one_half_is_not_taken_from_it_by_the_other() {
         let trial = |number: usize| TestDrive::PLAIN.trial(6.0, number as u64 + 1);
-        let trials = [0, 1].map(|number| with_load(trial(number), &|part| (number + part).is_multiple_of(2)));
+        let parts = parts(&[0, 1].map(trial))[0];
+        let trials = [0, 1].map(|number| with_load(trial(number), parts, &|part| half_of(number, part) == 0));
         let data = Data { trials: &trials, least_encoder_variance: 1e-12 };
         let model = Model { terms: vec![Term::ConstantLoad], scales: SCALES };
         let noise = Noise { ln_disturbance: (1e-5f64).ln(), ln_encoder: (25e-12f64).ln() };
@@ -124,7 +121,7 @@ mod tests {
         }
         // Its density is that of a step of 0.3 N that a filter takes up within a few of its time constants; where both halves say the
         // same, of the encoder's noise alone.
-        let alike = [0, 1].map(|number| with_load(trial(number), &|_| true));
+        let alike = [0, 1].map(|number| with_load(trial(number), parts, &|_| true));
         let same = Folds::of(&alike).held_out(&Data { trials: &alike, ..data }, &whole, &common);
         assert!(same.density < 0.1 * held.density, "{} {}", same.density, held.density);
     }
