@@ -68,7 +68,7 @@ fn verdict(search: &Search<'_>, fit: &Fit, [given, refitted, improved]: [f64; 3]
         };
     }
     let is_left = improved > OVER_NOISE * noise
-        && (above(improved) > MOST_LEFT * above(refitted) || a_curve_does_better(search, fit))
-        || a_friction_that_changes_does_better(search, fit);
+        && (above(improved) > MOST_LEFT * above(refitted) || a_curve_does_better(search, fit, noise))
+        || a_friction_that_changes_does_better(search, fit, noise);
     if is_left { Verdict::PartlyExplained } else { Verdict::Explained }
 }
