@@ -46,7 +46,7 @@ pub fn write(challenge: &ChallengeScore, out: &mut impl Write) -> io::Result<()>
 
 fn opening(challenge: &ChallengeScore) -> Markup {
     html! {
-        p.eyebrow { "palpate challenge, seed " (challenge.seed) ", " (challenge.cases) " recordings with concealed physics" }
+        p.eyebrow { "palpate challenge, seed " (challenge.seed) ", " (concealed(challenge)) }
         h1 { (headline(challenge)) }
         p.lead {
             "Each recording was made by a simulator with physics that its rig file does not know, or with none; a SHA-256 over the true answers was \
@@ -56,7 +56,30 @@ fn opening(challenge: &ChallengeScore) -> Markup {
     }
 }
 
+/// How many cases there are, and whose.
+fn concealed(challenge: &ChallengeScore) -> String {
+    let others: usize = challenge.sources.iter().map(|set| set.cases).sum();
+    if others == 0 {
+        return format!("{} recordings with concealed physics", challenge.cases);
+    }
+    format!("{others} cases of other authors and {} of our own with concealed physics", challenge.cases)
+}
+
+/// What was found, of other authors' cases first: proof on what we wrote ourselves is the weaker one.
 fn headline(challenge: &ChallengeScore) -> String {
+    let sets = &challenge.sources;
+    let [single, right, none, alarms] = [
+        sets.iter().map(|set| set.single.n).sum::<usize>(),
+        sets.iter().map(|set| set.single.named_rightly).sum(),
+        sets.iter().map(|set| set.none.n).sum(),
+        sets.iter().map(|set| set.none.false_alarms).sum(),
+    ];
+    if single > 0 && none > 0 {
+        return format!(
+            "Other authors' cases: one effect named correctly in {right} of {single}, no false alarm in {} of {none}.",
+            none - alarms
+        );
+    }
     let large: Vec<&CaseScore> = select(challenge, CaseScore::is_large);
     let right = large.iter().filter(|row| row.is_right()).count();
     let mut parts = Vec::new();
