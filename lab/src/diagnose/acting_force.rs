@@ -3,7 +3,9 @@
 use super::contact::fit::Fit;
 use super::contact::outcome::Outcome;
 use super::contact::pruning::without_term;
+use super::contact::rest::integrated_autocorrelation;
 use super::contact::trial::ContactTrial;
+use super::linalg::energy;
 use super::local_level::level;
 use super::term::Term;
 use super::verdict::Verdict;
@@ -64,24 +66,38 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
     trials
 }
 
+/// Trials with the force that a contact's law gives along the motion.
+pub struct LawForce {
+    /// The trials.
+    pub trials: Vec<Recording>,
+    /// Error of that force by the law's values, N or N m in root mean square: of p values fitted to n rows that leave r, r sqrt(p t / n), where t
+    /// rows tell no more than one.
+    pub error: f64,
+}
+
 /// `trials` without what the contact's law leaves of their force: the force by the law, which holds none of the sensor's noise; `None` where
 /// the law leaves more than that noise.
 ///
 /// The drive feels the force on the tool and not the sensor's noise. Where that is louder than what else disturbs the drive, a wrong law of
 /// the drive fits better that gives the contact's force by the position and hears the sensor less, as a link as stiff as the contact does.
 #[must_use]
-pub fn by_the_law(contact: &Outcome, trials: &[Recording]) -> Option<Vec<Recording>> {
+pub fn by_the_law(contact: &Outcome, trials: &[Recording]) -> Option<LawForce> {
     if !matches!(contact.verdict, Verdict::NoMismatch | Verdict::Parameters | Verdict::Explained) {
         return None;
     }
     let fit = &contact.chosen;
-    let mut trials = trials.to_vec();
+    let (mut trials, mut left) = (trials.to_vec(), Vec::new());
     for (number, (trial, looked_at)) in trials.iter_mut().zip(&contact.trials).enumerate() {
         let predicted = fit.model.predicted(&fit.values, looked_at, number);
         let noise: Vec<f64> = looked_at.force.iter().zip(&predicted).map(|(force, shown)| force - shown).collect();
         take_off(trial.force.as_mut()?, &trial.time, &noise, looked_at);
+        left.push(noise);
     }
-    Some(trials)
+    let memory = integrated_autocorrelation(&left.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let rows = left.iter().map(Vec::len).sum::<usize>() as f64;
+    let power = left.iter().map(|noise| energy(noise)).sum::<f64>() / rows;
+    let error = (power * memory * fit.model.free_count() as f64 / rows).sqrt();
+    Some(LawForce { trials, error })
 }
 
 /// Takes `added` off `force`, whose rows are at `time`: a value for each row that the contact was looked at in. Means of rows begin after
@@ -141,7 +157,10 @@ mod tests {
         };
         let plain = TestContact::PLAIN;
         let quiet = by_the_law(&contact(TestContact::PLAIN), &[1, 2].map(|seed| plain.recording(seed))).unwrap();
-        for (quiet, seed) in quiet.iter().zip([1, 2]) {
+        // Three values, 6000 rows that tell each for itself, or nearly so.
+        let by_hand = FORCE_NOISE * f64::sqrt(3.0 / 6000.0);
+        assert!((0.9 * by_hand..2.0 * by_hand).contains(&quiet.error), "{} N", quiet.error);
+        for (quiet, seed) in quiet.trials.iter().zip([1, 2]) {
             let recording = plain.recording(seed);
             let depth = recording.position.iter().zip(&recording.time);
             let errors: Vec<f64> = depth

@@ -2,11 +2,13 @@
 
 use anyhow::Result;
 
-use super::acting_force::{CARRIED_BY_THE_DRIVE, as_it_acted, by_the_law, sensor_effects};
+use super::acting_force::{CARRIED_BY_THE_DRIVE, LawForce, as_it_acted, by_the_law, sensor_effects};
 use super::check::Finding;
 use super::contact;
 use super::contact::circumstances::Circumstances;
 use super::drive;
+use super::drive::criteria::LEAST_PART_OF_ALL;
+use super::drive::identification::{NominalStanding, nominal_standing};
 use super::drive::named::NamedEffect;
 use super::drive::nominal::NominalDrive;
 use super::drive::trial::DriveTrial;
@@ -72,7 +74,7 @@ impl Recorded<'_> {
             let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
             let acted = acted.as_deref().unwrap_or(self.trials);
             let by_the_law = contact.as_ref().and_then(|contact| by_the_law(contact, acted));
-            let felt = self.likelier(acted, by_the_law.as_deref())?;
+            let felt = self.felt(acted, by_the_law.as_ref())?;
             let channels = Channels { contact, drive: self.drive(felt)?, refuted: refuted.clone() };
             let anew = self.refuted_by_the_drive(&channels, acted)?;
             if anew.is_empty() {
@@ -100,24 +102,26 @@ impl Recorded<'_> {
             return Ok(Vec::new());
         }
         // A search takes long: it is asked where the nominal law fits better already.
-        if self.nominal_likelihood(self.trials)? <= self.nominal_likelihood(acted)? {
+        let likelihood = |standing: Option<NominalStanding>| standing.map(|standing| standing.log_likelihood);
+        if likelihood(self.standing(self.trials)?) <= likelihood(self.standing(acted)?) {
             return Ok(Vec::new());
         }
         let as_shown = self.drive(self.trials)?;
         Ok(if is_complete(as_shown.as_ref()) { sensors } else { Vec::new() })
     }
 
-    /// Of the `first` trials and `others` those under whose force the drive's refitted nominal law is likelier.
-    fn likelier<'b>(&self, first: &'b [Recording], others: Option<&'b [Recording]>) -> Result<&'b [Recording]> {
-        let Some(others) = others else { return Ok(first) };
-        let is_better = self.nominal_likelihood(others)? > self.nominal_likelihood(first)?;
-        Ok(if is_better { others } else { first })
+    /// The trials that the drive is looked for in: those with the force by the contact's law, where the drive's refitted nominal law is likelier
+    /// under it than with the force as it `acted`, and where that force's own error is less than any term of the drive is told for.
+    fn felt<'b>(&self, acted: &'b [Recording], by_the_law: Option<&'b LawForce>) -> Result<&'b [Recording]> {
+        let Some(law) = by_the_law else { return Ok(acted) };
+        let (Some(first), Some(other)) = (self.standing(acted)?, self.standing(&law.trials)?) else { return Ok(acted) };
+        let is_known = law.error < LEAST_PART_OF_ALL.value() * other.unexplained;
+        Ok(if is_known && other.log_likelihood > first.log_likelihood { &law.trials } else { acted })
     }
 
-    /// ln of the likelihood of `trials` under the drive's refitted nominal law, nats; `None` where they show no motion of a drive.
-    fn nominal_likelihood(&self, trials: &[Recording]) -> Result<Option<f64>> {
-        let drive = self.prepared(trials)?;
-        Ok(drive.and_then(|(trials, nominal)| drive::identification::nominal_likelihood(&trials, &nominal)))
+    /// How the drive's refitted nominal law stands before `trials`; `None` where they show no motion of a drive.
+    fn standing(&self, trials: &[Recording]) -> Result<Option<NominalStanding>> {
+        Ok(self.prepared(trials)?.and_then(|(trials, nominal)| nominal_standing(&trials, &nominal)))
     }
 
     /// The contact, by force and position alone; `sensors` is what the drive found of the force sensor.

@@ -12,8 +12,10 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::criteria::{LARGEST_SHARE_BY_PLACE, LEAST_PART_OF_COEFFICIENTS};
 use super::fit::Fit;
+use super::rest::integrated_autocorrelation;
 use super::trial::ContactTrial;
-use crate::diagnose::linalg::correlation_ratio;
+use crate::diagnose::interval::NORMAL_97_5;
+use crate::diagnose::linalg::{correlation_ratio, energy};
 
 /// Low-pass filter of four vanishing moments (I. Daubechies, *Comm. Pure Appl. Math.* 41, 1988).
 const FILTER: [f64; 8] = [
@@ -61,42 +63,88 @@ const LEAST_STRETCHES: usize = 32;
 /// Fewest rows whose mean is taken off.
 const SHORTEST_STRETCH: usize = 8;
 
+/// Part of the power that is believed to have gone with the means, at the most: beyond it a stretch is no longer than the memory.
+const MOST_TAKEN: f64 = 0.5;
+
 /// Mean square in free motion over what is stated, of what is left beside the mean of each of [`LEAST_STRETCHES`] stretches or more, and beside
-/// the motion. Details are counted where they lie in free motion as a whole: those of a slow memory are longer than it, and this is not. The
-/// lesser one near the surface and far from it: what pulls the tool near it, as a neck does, is no noise.
+/// the motion; zero where it is too short. Details are counted where they lie in free motion as a whole: those of a slow memory are longer than
+/// it, and this is not. Where it is not the same near the surface and far from it, the lesser one: what pulls the tool near it, as a neck does, is
+/// no noise.
 fn free_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residual: &[Vec<f64>]) -> f64 {
-    let free = |number: usize, row: usize| {
-        let is_out = trials[number].position[row] <= fit.model.surface(&fit.values, number);
-        is_out && noise[number][row].is_finite()
-    };
+    let height = |number: usize, row: usize| fit.model.surface(&fit.values, number) - trials[number].position[row];
     let rows: Vec<(usize, usize)> = (0..trials.len())
         .flat_map(|number| (0..trials[number].len()).map(move |row| (number, row)))
-        .filter(|(number, row)| free(*number, *row))
+        .filter(|&(number, row)| height(number, row) >= 0.0 && noise[number][row].is_finite())
         .collect();
+    let usual = median(rows.iter().map(|(number, row)| height(*number, *row)).collect());
     let runs = rows.chunk_by(|before, after| before.0 == after.0 && before.1 + 1 == after.1);
     let longest = (rows.len() / LEAST_STRETCHES).max(SHORTEST_STRETCH);
-    let height = |number: usize, row: usize| fit.model.surface(&fit.values, number) - trials[number].position[row];
-    let usual = median(rows.iter().map(|(number, row)| height(*number, *row)).collect());
-    let mut sides = [Vec::new(), Vec::new()];
-    for stretch in runs.flat_map(|run| run.chunks(longest)).filter(|stretch| stretch.len() >= SHORTEST_STRETCH) {
-        let of_row = |&(number, row): &(usize, usize)| -> [f64; COLUMNS] {
-            let trial = &trials[number];
-            let left = residual[number][row] / noise[number][row].sqrt();
-            [left, 0.0, trial.position[row], trial.velocity[row], trial.acceleration[row]]
-        };
-        let values: Vec<[f64; COLUMNS]> = stretch.iter().map(of_row).collect();
-        let mean = |column: usize| values.iter().map(|row| row[column]).sum::<f64>() / values.len() as f64;
-        let means: [f64; COLUMNS] = std::array::from_fn(mean);
-        let side = usize::from(stretch.iter().all(|(number, row)| height(*number, *row) > usual));
-        let beside_mean = |row: &[f64; COLUMNS]| std::array::from_fn(|column| row[column] - means[column]);
-        sides[side].extend(values.iter().map(|row| Detail { values: beside_mean(row), group: side }));
-    }
-    let power = |details: &Vec<Detail>| {
-        let left = without_motion(&details.iter().collect::<Vec<_>>());
-        left.iter().map(|left| left * left).sum::<f64>() / left.len() as f64
+    let detail = |&(number, row): &(usize, usize)| {
+        let trial = &trials[number];
+        let left = residual[number][row] / noise[number][row].sqrt();
+        Detail {
+            values: [left, 0.0, trial.position[row], trial.velocity[row], trial.acceleration[row]],
+            group: FREE[0],
+        }
     };
-    let enough = sides.iter().filter(|details| details.len() >= LEAST_COUNT).map(power);
-    enough.min_by(f64::total_cmp).unwrap_or(0.0)
+    let stretches = runs.flat_map(|run| run.chunks(longest)).filter(|stretch| stretch.len() >= SHORTEST_STRETCH);
+    let is_far = |stretch: &&[(usize, usize)]| stretch.iter().all(|(number, row)| height(*number, *row) > usual);
+    let (far, near): (Vec<_>, Vec<_>) = stretches.partition(is_far);
+    let power = |side: Vec<&[(usize, usize)]>| {
+        power_beside_means(&side.iter().map(|rows| beside_mean(rows.iter().map(detail).collect())).collect::<Vec<_>>())
+    };
+    match [far, near].map(power) {
+        [Some(far), Some(near)] => far.with(&near),
+        [far, near] => far.or(near).map_or(0.0, |one| one.power),
+    }
+}
+
+/// A power, and how many independent squares tell it.
+struct Told {
+    power: f64,
+    freedoms: f64,
+}
+
+impl Told {
+    /// Both together where their ratio is within what chance makes of it, else the lesser one: ln of the ratio of two means of squares has a
+    /// variance of two over the freedoms of each (M. S. Bartlett, D. G. Kendall, *Suppl. J. R. Statist. Soc.* 8, 1946).
+    fn with(&self, other: &Self) -> f64 {
+        let deviation = (2.0 / self.freedoms + 2.0 / other.freedoms).sqrt();
+        if (self.power / other.power).ln().abs() > NORMAL_97_5 * deviation {
+            return self.power.min(other.power);
+        }
+        (self.power * self.freedoms + other.power * other.freedoms) / (self.freedoms + other.freedoms)
+    }
+}
+
+/// Power of what is left in `stretches`, which are beside their means, and beside the motion, with what the means took of it: as many rows' as
+/// tell no more than one. `None` where they are too few.
+fn power_beside_means(stretches: &[Vec<Detail>]) -> Option<Told> {
+    let left = without_motion(&stretches.iter().flatten().collect::<Vec<_>>());
+    if left.len() < LEAST_COUNT {
+        return None;
+    }
+    let mut rest = left.as_slice();
+    let pieces = stretches.iter().map(|details| {
+        let (piece, others) = rest.split_at(details.len());
+        rest = others;
+        piece
+    });
+    let memory = integrated_autocorrelation(&pieces.collect::<Vec<_>>());
+    let rows = left.len() as f64;
+    let taken = (memory * stretches.len() as f64 / rows).min(MOST_TAKEN);
+    Some(Told { power: energy(&left) / (rows * (1.0 - taken)), freedoms: rows * (1.0 - taken) / memory })
+}
+
+/// `details` of rows that follow each other, beside the mean of each column.
+fn beside_mean(mut details: Vec<Detail>) -> Vec<Detail> {
+    let count = details.len() as f64;
+    let means: [f64; COLUMNS] =
+        std::array::from_fn(|column| details.iter().map(|detail| detail.values[column]).sum::<f64>() / count);
+    for detail in &mut details {
+        detail.values.iter_mut().zip(means).for_each(|(value, mean)| *value -= mean);
+    }
+    details
 }
 
 /// One trial's columns at a level, and what the tool does at each of its rows.
@@ -324,6 +372,15 @@ mod tests {
         }
         let power = power_behind(&pulled.each_ref().map(TestContact::seen));
         assert!((1.0..1.3).contains(&power), "{power}");
+    }
+
+    #[test]
+    fn two_powers_are_one_where_chance_makes_their_ratio() {
+        let told = |power: f64, freedoms: f64| Told { power, freedoms };
+        // Of fifty and fifty squares the ratio's logarithm has a deviation of 0.283: a factor of 1.74 at 1.96 of them.
+        assert!((told(1.0, 50.0).with(&told(1.7, 50.0)) - 1.35).abs() < 1e-12);
+        assert_eq!(told(1.0, 50.0).with(&told(1.8, 50.0)), 1.0);
+        assert_eq!(told(1.8, 50.0).with(&told(1.0, 50.0)), 1.0);
     }
 
     /// A level at which the law's force is a hundred times what is left in contact: free motion, with twice the stated deviation, is asked alone.

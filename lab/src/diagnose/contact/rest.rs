@@ -37,7 +37,8 @@ impl Rest {
 }
 
 /// 1 + 2 sum of the autocorrelations up to a lag of six times itself (A. Sokal's window), in rows.
-fn integrated_autocorrelation(trials: &[&[f64]]) -> f64 {
+#[must_use]
+pub fn integrated_autocorrelation(trials: &[&[f64]]) -> f64 {
     let total: f64 = trials.iter().map(|rows| energy(rows)).sum();
     let longest = trials.iter().map(|rows| rows.len()).max().unwrap_or(0) / 4;
     let mut time = 1.0;

@@ -44,13 +44,23 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
     })
 }
 
-/// ln of the likelihood of `trials` under the refitted nominal law, nats; `None` where they show no motion.
+/// How the refitted nominal law stands before trials.
+pub struct NominalStanding {
+    /// ln of their likelihood under it, nats.
+    pub log_likelihood: f64,
+    /// Force that it does not explain in the common band, N or N m in root mean square.
+    pub unexplained: f64,
+}
+
+/// How the refitted nominal law stands before `trials`; `None` where they show no motion.
 #[must_use]
-pub fn nominal_likelihood(trials: &[DriveTrial], rig: &NominalDrive) -> Option<f64> {
+pub fn nominal_standing(trials: &[DriveTrial], rig: &NominalDrive) -> Option<NominalStanding> {
     let scales = scales(trials, rig)?;
     let variance = encoder_variance(trials, &scales);
     let data = Data { trials, least_encoder_variance: 0.3 * variance };
-    Some(nominal_fit(&data, rig, scales, variance)?.log_likelihood)
+    let search = search_from(data, rig, nominal_fit(&data, rig, scales, variance)?);
+    let unexplained = search.unexplained(&search.nominal);
+    Some(NominalStanding { log_likelihood: search.nominal.log_likelihood, unexplained })
 }
 
 fn identify_as_they_are(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {

@@ -303,4 +303,23 @@ mod tests {
         // Without an excess it is Coulomb friction.
         assert!(Term::Stribeck.is_at_end(&[excess, 0.0, speed], &SCALES));
     }
+    /// Where the mass sits makes a link what it is; its damping and its friction do not.
+    #[test]
+    fn a_link_whose_share_of_the_mass_may_be_any_is_not_shown() {
+        let link = Term::Compliance(Side::Motor);
+        let whole: Vec<[f64; 2]> = link.ranges(&SCALES).iter().map(|range| [range.low, range.high]).collect();
+        let told = |values: &[usize]| {
+            let narrow = whole.iter().enumerate().map(|(at, [low, high])| {
+                if values.contains(&at) { [low + 0.4 * (high - low), low + 0.6 * (high - low)] } else { [*low, *high] }
+            });
+            !link.is_undetermined(&narrow.collect::<Vec<_>>(), &SCALES)
+        };
+        assert!(told(&[0, 2]) && told(&[0, 1, 2, 3]));
+        assert!(!told(&[0, 1, 3]) && !told(&[1, 2, 3]) && !told(&[]));
+        // From an end of the range to within it, something is told.
+        let mut half = whole.clone();
+        half[0][0] *= 2.0;
+        half[2][1] *= 0.9;
+        assert!(!link.is_undetermined(&half, &SCALES));
+    }
 }
