@@ -17,6 +17,7 @@ pub mod interval;
 pub mod jackknife;
 pub mod linalg;
 pub mod local_level;
+pub mod median;
 pub mod model_comparison;
 pub mod phase;
 pub mod report;

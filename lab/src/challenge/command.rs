@@ -105,7 +105,7 @@ pub fn run(args: &ChallengeArgs) -> Result<()> {
     if args.publish {
         let steps = Steps::new("challenge");
         steps.say(DRAWING);
-        publish(&challenge, &text, &summary)?;
+        publish(&challenge, &text)?;
     }
     match json {
         Some(file) => commit(file, text.as_bytes()),
@@ -125,13 +125,13 @@ fn read(path: &Path) -> Result<ChallengeScore> {
 }
 
 /// Puts the score where the project shows it.
-fn publish(challenge: &ChallengeScore, text: &str, summary: &str) -> Result<()> {
+fn publish(challenge: &ChallengeScore, text: &str) -> Result<()> {
     let project = project()?;
     let results = project.join("results");
     let mut page = Vec::new();
     page::write(challenge, &mut page).context("the page cannot be written")?;
     let mut files = vec![
-        filled(project.join("README.md"), summary)?,
+        filled(project.join("README.md"), &summary::readme(challenge))?,
         (results.join("challenge.json"), text.as_bytes().to_vec()),
         (results.join("challenge.html"), page),
     ];

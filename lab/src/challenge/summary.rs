@@ -1,14 +1,59 @@
 //! The score in a table of Markdown: for the README, and for people who read a terminal.
 
+use palpate_cases::truth::CaseKind;
+
 use super::binomial::clopper_pearson;
+use super::case_score::CaseScore;
 use super::challenge_score::ChallengeScore;
 use super::recordings::table::line;
+use super::scored_case::ScoredCase as _;
 use super::targets::{Target, counts_of, statistics, targets};
 
 /// What begins the part of a README or page of the documentation that the command writes.
 pub const BEGIN: &str = "<!-- written by `palpate challenge --publish`; not by hand -->";
 /// What ends it.
 pub const END: &str = "<!-- end of what `palpate challenge` writes -->";
+
+/// What the README shows: what fails, then the table.
+#[must_use]
+pub fn readme(challenge: &ChallengeScore) -> String {
+    format!("{}\n{}", failures(challenge), table(challenge))
+}
+
+/// Strength of an effect below which no recording shows it for sure: half of the noise.
+const SMALL: f64 = 0.5;
+
+/// How many answers of each kind are wrong, and of how many.
+fn failures(challenge: &ChallengeScore) -> String {
+    let mut wrong = [(0, 0); 5];
+    for (kind, (_, hits, of)) in challenge.sources.iter().flat_map(|set| counts_of(set).into_iter().enumerate()) {
+        wrong[kind] = (wrong[kind].0 + of - hits, wrong[kind].1 + of);
+    }
+    let [none, single, _, pairs, outside] = wrong;
+    let count = |wrong: &dyn Fn(&CaseScore) -> bool, of: &dyn Fn(&CaseScore) -> bool| {
+        let all: Vec<&CaseScore> = challenge.rows.iter().filter(|row| of(row)).collect();
+        (all.iter().filter(|row| wrong(row)).count(), all.len())
+    };
+    let small = count(&|row| !row.is_right(), &|row| row.kind == CaseKind::Single && row.strength < SMALL);
+    let values: Vec<_> = challenge.rows.iter().flat_map(|row| &row.values).collect();
+    let missed = values.iter().filter(|value| !value.covered).count();
+    let of = |(wrong, all): (usize, usize)| format!("{wrong} of {all}");
+    let ours = (challenge.outside.n - challenge.outside.owned, challenge.outside.n);
+    let mut rows = vec![
+        ("other authors' cases: one effect, not named rightly", of(single)),
+        ("the same: two effects", of(pairs)),
+        ("the same: nothing missing, something named or `unknown`", of(none)),
+        ("outside the list: not reported as unknown", format!("others {}; ours {}", of(outside), of(ours))),
+        ("parameter interval misses the truth", format!("{} (5 % nominal)", of((missed, values.len())))),
+        ("effect below half of the noise: not named", of(small)),
+    ];
+    if let Some(real) = &challenge.recorded {
+        let unnamed = of((real.owned + real.missed, real.n));
+        rows.push(("real recordings: not named", format!("{unnamed}; named wrongly {}", real.wrong)));
+    }
+    let lines = rows.into_iter().map(|(what, figure)| format!("| {what} | {figure} |\n"));
+    "| what fails | measured |\n|---|---|\n".to_owned() + &lines.collect::<String>()
+}
 
 /// The table, and what it was made of.
 #[must_use]

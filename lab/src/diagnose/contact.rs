@@ -1,6 +1,7 @@
 //! The contact by a model of its force: position in, force out.
 
 pub mod alternative;
+mod beside_motion;
 pub mod broken_line;
 pub mod circumstances;
 mod colour;
@@ -10,6 +11,7 @@ pub mod criteria;
 pub mod data;
 pub mod fall;
 pub mod fit;
+mod free_motion;
 mod growth;
 pub mod held_out;
 pub mod in_step;

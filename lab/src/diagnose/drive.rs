@@ -34,7 +34,6 @@ pub mod likelihood;
 pub mod linearisation;
 pub mod links;
 pub mod matrix;
-pub mod median;
 pub mod missing_force;
 pub mod model;
 pub mod named;

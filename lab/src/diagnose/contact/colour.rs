@@ -6,16 +6,14 @@
 //! in free motion and in contact, slow and fast, because noise is there whatever the tool does, and a law's misfit is not. From the level on at
 //! which the law's own force is louder than what is left, a misfit could be all of it: contact is not asked, and free motion, in which no law of
 //! the contact has a force, is. Where nothing is left to be asked the noise is taken to go on as above; in free motion it is no less than what
-//! is left there over the longest stretches of which there are enough.
+//! is left there over the longest stretches of which there are enough: details of a slow memory are longer than free motion is.
 
-use nalgebra::{Matrix3, Vector3};
-
-use super::criteria::{LARGEST_SHARE_BY_PLACE, LEAST_PART_OF_COEFFICIENTS};
+use super::beside_motion::{MotionRow, without_motion};
+use super::criteria::LEAST_PART_OF_COEFFICIENTS;
 use super::fit::Fit;
-use super::rest::integrated_autocorrelation;
+use super::free_motion::{free_power, has_free_motion};
 use super::trial::ContactTrial;
-use crate::diagnose::interval::NORMAL_97_5;
-use crate::diagnose::linalg::{correlation_ratio, energy};
+use crate::diagnose::median::median;
 
 /// Low-pass filter of four vanishing moments (I. Daubechies, *Comm. Pure Appl. Math.* 41, 1988).
 const FILTER: [f64; 8] = [
@@ -57,96 +55,6 @@ pub fn noise_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], resid
     (power + share * last).max(free).max(1.0)
 }
 
-/// Stretches of free motion whose means are taken off: a power is known to a quarter by as many.
-const LEAST_STRETCHES: usize = 32;
-
-/// Fewest rows whose mean is taken off.
-const SHORTEST_STRETCH: usize = 8;
-
-/// Part of the power that is believed to have gone with the means, at the most: beyond it a stretch is no longer than the memory.
-const MOST_TAKEN: f64 = 0.5;
-
-/// Mean square in free motion over what is stated, of what is left beside the mean of each of [`LEAST_STRETCHES`] stretches or more, and beside
-/// the motion; zero where it is too short. Details are counted where they lie in free motion as a whole: those of a slow memory are longer than
-/// it, and this is not. Where it is not the same near the surface and far from it, the lesser one: what pulls the tool near it, as a neck does, is
-/// no noise.
-fn free_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residual: &[Vec<f64>]) -> f64 {
-    let height = |number: usize, row: usize| fit.model.surface(&fit.values, number) - trials[number].position[row];
-    let rows: Vec<(usize, usize)> = (0..trials.len())
-        .flat_map(|number| (0..trials[number].len()).map(move |row| (number, row)))
-        .filter(|&(number, row)| height(number, row) >= 0.0 && noise[number][row].is_finite())
-        .collect();
-    let usual = median(rows.iter().map(|(number, row)| height(*number, *row)).collect());
-    let runs = rows.chunk_by(|before, after| before.0 == after.0 && before.1 + 1 == after.1);
-    let longest = (rows.len() / LEAST_STRETCHES).max(SHORTEST_STRETCH);
-    let detail = |&(number, row): &(usize, usize)| {
-        let trial = &trials[number];
-        let left = residual[number][row] / noise[number][row].sqrt();
-        Detail {
-            values: [left, 0.0, trial.position[row], trial.velocity[row], trial.acceleration[row]],
-            group: FREE[0],
-        }
-    };
-    let stretches = runs.flat_map(|run| run.chunks(longest)).filter(|stretch| stretch.len() >= SHORTEST_STRETCH);
-    let is_far = |stretch: &&[(usize, usize)]| stretch.iter().all(|(number, row)| height(*number, *row) > usual);
-    let (far, near): (Vec<_>, Vec<_>) = stretches.partition(is_far);
-    let power = |side: Vec<&[(usize, usize)]>| {
-        power_beside_means(&side.iter().map(|rows| beside_mean(rows.iter().map(detail).collect())).collect::<Vec<_>>())
-    };
-    match [far, near].map(power) {
-        [Some(far), Some(near)] => far.with(&near),
-        [far, near] => far.or(near).map_or(0.0, |one| one.power),
-    }
-}
-
-/// A power, and how many independent squares tell it.
-struct Told {
-    power: f64,
-    freedoms: f64,
-}
-
-impl Told {
-    /// Both together where their ratio is within what chance makes of it, else the lesser one: ln of the ratio of two means of squares has a
-    /// variance of two over the freedoms of each (M. S. Bartlett, D. G. Kendall, *Suppl. J. R. Statist. Soc.* 8, 1946).
-    fn with(&self, other: &Self) -> f64 {
-        let deviation = (2.0 / self.freedoms + 2.0 / other.freedoms).sqrt();
-        if (self.power / other.power).ln().abs() > NORMAL_97_5 * deviation {
-            return self.power.min(other.power);
-        }
-        (self.power * self.freedoms + other.power * other.freedoms) / (self.freedoms + other.freedoms)
-    }
-}
-
-/// Power of what is left in `stretches`, which are beside their means, and beside the motion, with what the means took of it: as many rows' as
-/// tell no more than one. `None` where they are too few.
-fn power_beside_means(stretches: &[Vec<Detail>]) -> Option<Told> {
-    let left = without_motion(&stretches.iter().flatten().collect::<Vec<_>>());
-    if left.len() < LEAST_COUNT {
-        return None;
-    }
-    let mut rest = left.as_slice();
-    let pieces = stretches.iter().map(|details| {
-        let (piece, others) = rest.split_at(details.len());
-        rest = others;
-        piece
-    });
-    let memory = integrated_autocorrelation(&pieces.collect::<Vec<_>>());
-    let rows = left.len() as f64;
-    let taken = (memory * stretches.len() as f64 / rows).min(MOST_TAKEN);
-    Some(Told { power: energy(&left) / (rows * (1.0 - taken)), freedoms: rows * (1.0 - taken) / memory })
-}
-
-/// `details` of rows that follow each other, beside the mean of each column.
-fn beside_mean(mut details: Vec<Detail>) -> Vec<Detail> {
-    let count = details.len() as f64;
-    let means: [f64; COLUMNS] =
-        std::array::from_fn(|column| details.iter().map(|detail| detail.values[column]).sum::<f64>() / count);
-    for detail in &mut details {
-        detail.values.iter_mut().zip(means).for_each(|(value, mean)| *value -= mean);
-    }
-    details
-}
-
 /// One trial's columns at a level, and what the tool does at each of its rows.
 struct Pyramid {
     columns: [Vec<f64>; COLUMNS],
@@ -158,7 +66,8 @@ struct Pyramid {
 
 /// The coefficients of one instant, and what the tool does there.
 struct Detail {
-    values: [f64; COLUMNS],
+    row: MotionRow,
+    law: f64,
     group: usize,
 }
 
@@ -173,7 +82,7 @@ impl Pyramid {
         // Half of the rows of either kind are slow.
         let usual = |inside: bool| {
             let rows = (0..trial.len()).filter(|row| is_inside(*row) == inside);
-            median(rows.map(|row| trial.velocity[row].abs()).collect())
+            median(rows.map(|row| trial.velocity[row].abs())).unwrap_or(0.0)
         };
         let usual = [usual(false), usual(true)];
         let group = |row: usize| {
@@ -219,12 +128,14 @@ impl Pyramid {
         self.level += 1;
         let wide = f64::from(2u32.pow(self.level));
         let middle = |at: usize| ((wide * at as f64 + 0.5 * reach * (wide - 1.0)) as usize).min(self.groups.len() - 1);
-        let details = (0..count).map(|at| Detail {
-            values: std::array::from_fn(|column| detail(&self.columns[column], at)),
-            group: match has_free_motion {
+        let details = (0..count).map(|at| {
+            let [left, law, motion @ ..]: [f64; COLUMNS] =
+                std::array::from_fn(|column| detail(&self.columns[column], at));
+            let group = match has_free_motion {
                 true => self.group(wide as usize * at, middle(at), (reach * (wide - 1.0)) as usize),
                 false => self.groups[middle(at)],
-            },
+            };
+            Detail { row: MotionRow { left, motion }, law, group }
         });
         let details = details.collect();
         for column in &mut self.columns {
@@ -233,25 +144,6 @@ impl Pyramid {
         }
         details
     }
-}
-
-/// Whether there is free motion in which nothing acts on the tool: a law that is wrong can put its surface far into the contact, and before it
-/// the force then follows the position (correlation ratio).
-fn has_free_motion(trials: &[ContactTrial], fit: &Fit) -> bool {
-    let (mut rows, mut all) = (0, 0);
-    for (number, trial) in trials.iter().enumerate() {
-        let surface = fit.model.surface(&fit.values, number);
-        let free = |column: &[f64]| -> Vec<f64> {
-            let rows = column.iter().zip(&trial.position).filter(|(_, position)| **position <= surface);
-            rows.map(|(value, _)| *value).collect()
-        };
-        let (position, force) = (free(&trial.position), free(&trial.force));
-        if fit.model.bilateral || correlation_ratio(&position, &force) > LARGEST_SHARE_BY_PLACE {
-            return false;
-        }
-        (rows, all) = (rows + position.len(), all + trial.len());
-    }
-    rows as f64 >= LEAST_PART_OF_COEFFICIENTS * all as f64
 }
 
 /// Power of the noise at a level; `None` where nothing tells it. A misfit that is louder than the law at some speed may be all that is left
@@ -276,41 +168,16 @@ fn power_of(details: &[&Detail]) -> Option<f64> {
     if details.len() < LEAST_COUNT {
         return None;
     }
-    let law = median(details.iter().map(|detail| detail.values[1].abs()).collect());
-    let left = median(without_motion(details).into_iter().map(f64::abs).collect());
+    let rows: Vec<MotionRow> = details.iter().map(|detail| detail.row).collect();
+    let law = median(details.iter().map(|detail| detail.law.abs()))?;
+    let left = median(without_motion(&rows).into_iter().map(f64::abs))?;
     (law < left).then(|| (left / NORMAL_MEDIAN).powi(2))
-}
-
-/// What is left in `details` beside the motion's part of it.
-fn without_motion(details: &[&Detail]) -> Vec<f64> {
-    let scale: [f64; 3] = std::array::from_fn(|at| {
-        let squares = details.iter().map(|detail| detail.values[2 + at].powi(2)).sum::<f64>();
-        (squares / details.len() as f64).sqrt().max(f64::MIN_POSITIVE)
-    });
-    let motion = |detail: &Detail| Vector3::from_fn(|at, _| detail.values[2 + at] / scale[at]);
-    let (mut matrix, mut right) = (Matrix3::identity() * 1e-9, Vector3::zeros());
-    for detail in details {
-        let motion = motion(detail);
-        matrix += motion * motion.transpose();
-        right += motion * detail.values[0];
-    }
-    let parts = matrix.cholesky().map_or_else(Vector3::zeros, |factors| factors.solve(&right));
-    details.iter().map(|detail| detail.values[0] - motion(detail).dot(&parts)).collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() {
-        return 0.0;
-    }
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::data::Data;
     use super::super::fit::Effort;
-    use super::super::model::index;
     use super::super::nominal::nominal_fit;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
@@ -374,21 +241,12 @@ mod tests {
         assert!((1.0..1.3).contains(&power), "{power}");
     }
 
-    #[test]
-    fn two_powers_are_one_where_chance_makes_their_ratio() {
-        let told = |power: f64, freedoms: f64| Told { power, freedoms };
-        // Of fifty and fifty squares the ratio's logarithm has a deviation of 0.283: a factor of 1.74 at 1.96 of them.
-        assert!((told(1.0, 50.0).with(&told(1.7, 50.0)) - 1.35).abs() < 1e-12);
-        assert_eq!(told(1.0, 50.0).with(&told(1.8, 50.0)), 1.0);
-        assert_eq!(told(1.8, 50.0).with(&told(1.0, 50.0)), 1.0);
-    }
-
     /// A level at which the law's force is a hundred times what is left in contact: free motion, with twice the stated deviation, is asked alone.
     #[test]
     fn noise_that_the_law_hides_in_contact_is_heard_in_free_motion() {
         let detail = |at: usize, group: usize, law: f64| {
             let left = if at.is_multiple_of(2) { 2.0 * NORMAL_MEDIAN } else { -2.0 * NORMAL_MEDIAN };
-            Detail { values: [left, law, 0.0, 0.0, 0.0], group }
+            Detail { row: MotionRow { left, motion: [0.0; 3] }, law, group }
         };
         let in_contact = |law: f64| (0..100).map(move |at| detail(at, 2, law));
         let level = |law: f64, free: usize, has_free_motion: bool| {
@@ -400,17 +258,6 @@ mod tests {
         // What is left in contact is noise where it never leaves, and may be a misfit where free motion is too short to tell.
         assert!((level(0.0, 0, false).unwrap() - 4.0).abs() < 1e-12);
         assert_eq!(level(0.0, 10, true), None);
-    }
-
-    #[test]
-    fn before_a_surface_that_lies_within_the_contact_nothing_is_free() {
-        let trials = [1, 2].map(|seed| TestContact::PLAIN.trial(seed));
-        let data = Data::new(&trials);
-        let mut fit = nominal_fit(&data, &TestContact::nominal());
-        assert!(has_free_motion(&trials, &fit));
-        // Four millimetres of eight: before it the spring's force is all that is left.
-        fit.values[index::SURFACE] = 4e-3;
-        assert!(!has_free_motion(&trials, &fit));
     }
 
     #[test]

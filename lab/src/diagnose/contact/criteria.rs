@@ -71,6 +71,10 @@ thresholds! { "contact";
     SEEN_BY_BOTH = 0.8, "1", chosen;
     /// Share of all wavelet coefficients that what the tool does has to have to be asked for the noise's power.
     LEAST_PART_OF_COEFFICIENTS = 0.05, "1", chosen;
+    /// Stretches of free motion whose means are taken off a noise's power: it is known to a quarter by as many, the root of two over 32.
+    LEAST_STRETCHES = 32.0, "count", derived;
+    /// Part of the noise's power that is believed to have gone with those means: beyond half of it a stretch is no longer than the memory.
+    MOST_TAKEN = 0.5, "1", derived;
     /// Share of the force's variance before the surface that the position may explain: with more than half of it the tool is not free there.
     LARGEST_SHARE_BY_PLACE = 0.5, "1", derived;
     /// Share of a wave's variance that place and direction of the tool have from which the wave is not told from a law of the motion: half.

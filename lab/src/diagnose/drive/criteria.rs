@@ -46,6 +46,8 @@ thresholds! { "drive";
     /// Part of a mismatch that a free curve over position leaves of what named physics leaves, below which the names are not believed
     /// alone.
     CURVE_PART = 0.5, "1", chosen;
+    /// Part of the usual speed below which a motion's direction fades, where halves are judged by what they tell.
+    SLOW_PART = 0.1, "1", chosen;
     /// Share of the held-out power that a named term has to take, beside the others: half of what the search asks on its own rows.
     LEAST_HELD_OUT_SHARE = 0.12, "1", chosen;
     /// Times the sensors' own noise from which a missing force is one.

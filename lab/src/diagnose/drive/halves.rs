@@ -6,6 +6,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::criteria::SLOW_PART;
 use super::trial::DriveTrial;
 
 /// What a law's values act by: one, position, velocity, its direction, acceleration.
@@ -22,9 +23,6 @@ const TRIED: [usize; 3] = [4, 2, 8];
 /// Rows that a part holds at the least.
 const LEAST_ROWS: usize = 200;
 
-/// Part of the usual speed below which the direction fades.
-const SLOW: f64 = 0.1;
-
 /// What is told of a value that nothing tells.
 const LEAST_INFORMATION: f64 = 1e-9;
 
@@ -39,11 +37,11 @@ pub fn parts(trials: &[DriveTrial]) -> Vec<usize> {
         let each = of_each(parts);
         [0, 1].map(|half| information(&motions, &each, half)).into_iter().fold(f64::INFINITY, f64::min)
     };
-    let best = TRIED.into_iter().reduce(|best, parts| if told(parts) > told(best) { parts } else { best });
-    of_each(best.unwrap_or(2))
+    let tried = TRIED.map(|parts| (told(parts), parts));
+    of_each(tried.into_iter().fold(tried[0], |best, other| if other.0 > best.0 { other } else { best }).1)
 }
 
-/// Whether part `part` of trial number `trial` is in the second half.
+/// Which of both halves part `part` of trial number `trial` is in.
 #[must_use]
 pub const fn half_of(trial: usize, part: usize) -> usize {
     (trial + part) % 2
@@ -71,7 +69,7 @@ fn scaled(mut motions: Vec<Vec<Row>>) -> Vec<Vec<Row>> {
     let size = squares.map(|sum| (sum / count).sqrt().max(f64::MIN_POSITIVE));
     for row in motions.iter_mut().flatten() {
         *row = row.component_div(&size);
-        row[3] = row[2] / (row[2].abs() + SLOW);
+        row[3] = row[2] / (row[2].abs() + SLOW_PART.value());
     }
     motions
 }

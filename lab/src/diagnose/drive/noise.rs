@@ -1,6 +1,6 @@
 //! What is random: the encoder's noise and the force that no law accounts for.
 
-use super::median::median;
+use crate::diagnose::median::median;
 
 use std::f64::consts::TAU;
 

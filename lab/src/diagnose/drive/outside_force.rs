@@ -13,9 +13,9 @@ use rand_chacha::ChaCha12Rng;
 use super::criteria::{FAR_FROM_REGRESSION, LEAST_OUTSIDE_SHARE, MOST_OUTSIDE_TIME};
 use super::input::Inputs;
 use super::law::DriveLaw;
-use super::median::median;
 use super::scales::Scales;
 use super::trial::DriveTrial;
+use crate::diagnose::median::median;
 
 /// A stretch of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]

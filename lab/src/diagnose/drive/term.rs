@@ -303,6 +303,7 @@ mod tests {
         // Without an excess it is Coulomb friction.
         assert!(Term::Stribeck.is_at_end(&[excess, 0.0, speed], &SCALES));
     }
+
     /// Where the mass sits makes a link what it is; its damping and its friction do not.
     #[test]
     fn a_link_whose_share_of_the_mass_may_be_any_is_not_shown() {

@@ -1,7 +1,7 @@
 //! A recording as the drive's model sees it: encoder rows, and the signals that act between them.
 
-use super::median::median;
 use super::noise::white_variance;
+use crate::diagnose::median::median;
 
 /// One trial. Encoder rows may be fewer than the recorded ones; effort and force keep every recorded row.
 #[derive(Debug, Clone)]
