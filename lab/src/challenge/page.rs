@@ -50,7 +50,7 @@ fn opening(challenge: &ChallengeScore) -> Markup {
         h1 { (headline(challenge)) }
         p.lead {
             "Each recording was made by a simulator with physics that its rig file does not know, or with none; a SHA-256 over the true answers was \
-             published; then each was diagnosed by the command that a user runs, which sees the rig file and two trials and nothing else."
+             published; then each was diagnosed by the command that a user runs, which sees the rig file and the trials and nothing else."
         }
         @for what in &challenge.left_out { p.notices { "Left out: " (what) } }
     }
