@@ -5,6 +5,7 @@ use super::contact::outcome::Outcome;
 use super::contact::pruning::without_term;
 use super::contact::rest::integrated_autocorrelation;
 use super::contact::trial::ContactTrial;
+use super::interval::Intervals;
 use super::linalg::energy;
 use super::local_level::level;
 use super::term::Term;
@@ -100,13 +101,42 @@ pub fn by_the_law(contact: &Outcome, trials: &[Recording]) -> Option<LawForce> {
     Some(LawForce { trials, error })
 }
 
+/// Changes of the force by the law of `contact` in the rows of `trials`, a column a trial, for one deviation of its values along each of as
+/// many directions that are independent of one another: together they have the covariance of the values.
+#[must_use]
+pub fn deviations_of_law(contact: &Outcome, trials: &[Recording]) -> Vec<Vec<Vec<f64>>> {
+    let fit = &contact.chosen;
+    let predicted = |values: &[f64]| -> Vec<Vec<f64>> {
+        let each = contact.trials.iter().enumerate();
+        each.map(|(number, trial)| fit.model.predicted(values, trial, number)).collect()
+    };
+    let at = predicted(&fit.values);
+    let moved = |direction: Vec<f64>| -> Vec<Vec<f64>> {
+        let values: Vec<f64> = fit.values.iter().zip(direction).map(|(value, change)| value + change).collect();
+        let each = predicted(&values).into_iter().zip(&at).zip(&contact.trials).zip(trials);
+        each.map(|(((after, before), looked_at), trial)| {
+            let change: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
+            interpolated(&looked_at.time, &change, &clock(&trial.time, looked_at))
+        })
+        .collect()
+    };
+    let intervals = Intervals { ends: contact.intervals.clone(), covariance: contact.covariance.clone() };
+    let directions = intervals.directions(&fit.values).into_iter().map(moved);
+    directions.filter(|change| change.iter().flatten().all(|change| change.is_finite())).collect()
+}
+
 /// Takes `added` off `force`, whose rows are at `time`: a value for each row that the contact was looked at in. Means of rows begin after
 /// the first row and end before the last.
 fn take_off(force: &mut [f64], time: &[f64], added: &[f64], looked_at: &ContactTrial) {
-    let [first, last] = [0, looked_at.len() - 1].map(|row| looked_at.time[row]);
-    let clock: Vec<f64> = time.iter().map(|at| (at - time[0]).clamp(first, last)).collect();
-    let added = interpolated(&looked_at.time, added, &clock);
+    let added = interpolated(&looked_at.time, added, &clock(time, looked_at));
     force.iter_mut().zip(added).for_each(|(force, added)| *force -= added);
+}
+
+/// The recorded rows at `time` on the clock of the rows that the contact was looked at in, no earlier than their first and no later than
+/// their last.
+fn clock(time: &[f64], looked_at: &ContactTrial) -> Vec<f64> {
+    let [first, last] = [0, looked_at.len() - 1].map(|row| looked_at.time[row]);
+    time.iter().map(|at| (at - time[0]).clamp(first, last)).collect()
 }
 
 #[cfg(test)]

@@ -2,13 +2,14 @@
 
 use anyhow::Result;
 
-use super::acting_force::{CARRIED_BY_THE_DRIVE, LawForce, as_it_acted, by_the_law, sensor_effects};
+use super::acting_force::{CARRIED_BY_THE_DRIVE, LawForce, as_it_acted, by_the_law, deviations_of_law, sensor_effects};
 use super::check::Finding;
 use super::contact;
 use super::contact::circumstances::Circumstances;
 use super::drive;
 use super::drive::criteria::LEAST_PART_OF_ALL;
 use super::drive::identification::{NominalStanding, nominal_standing};
+use super::drive::interval::widen;
 use super::drive::named::NamedEffect;
 use super::drive::nominal::NominalDrive;
 use super::drive::trial::DriveTrial;
@@ -74,8 +75,12 @@ impl Recorded<'_> {
             let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
             let acted = acted.as_deref().unwrap_or(self.trials);
             let by_the_law = contact.as_ref().and_then(|contact| by_the_law(contact, acted));
-            let felt = self.felt(acted, by_the_law.as_ref())?;
-            let channels = Channels { contact, drive: self.drive(felt)?, refuted: refuted.clone() };
+            let by_the_law = self.felt(acted, by_the_law)?;
+            let mut drive = self.drive(by_the_law.as_ref().map_or(acted, |law| &law.trials))?;
+            if let (Some(contact), Some(drive), Some(law)) = (&contact, &mut drive, &by_the_law) {
+                widen(drive, &deviations_of_law(contact, &law.trials));
+            }
+            let channels = Channels { contact, drive, refuted: refuted.clone() };
             let anew = self.refuted_by_the_drive(&channels, acted)?;
             if anew.is_empty() {
                 break channels;
@@ -110,13 +115,13 @@ impl Recorded<'_> {
         Ok(if is_complete(as_shown.as_ref()) { sensors } else { Vec::new() })
     }
 
-    /// The trials that the drive is looked for in: those with the force by the contact's law, where the drive's refitted nominal law is likelier
-    /// under it than with the force as it `acted`, and where that force's own error is less than any term of the drive is told for.
-    fn felt<'b>(&self, acted: &'b [Recording], by_the_law: Option<&'b LawForce>) -> Result<&'b [Recording]> {
-        let Some(law) = by_the_law else { return Ok(acted) };
-        let (Some(first), Some(other)) = (self.standing(acted)?, self.standing(&law.trials)?) else { return Ok(acted) };
+    /// The force `by_the_law` of the contact where the drive is looked for in that: where its refitted nominal law is likelier under it than with
+    /// the force as it `acted`, and where that force's own error is less than any term of the drive is told for.
+    fn felt(&self, acted: &[Recording], by_the_law: Option<LawForce>) -> Result<Option<LawForce>> {
+        let Some(law) = by_the_law else { return Ok(None) };
+        let (Some(first), Some(other)) = (self.standing(acted)?, self.standing(&law.trials)?) else { return Ok(None) };
         let is_known = law.error < LEAST_PART_OF_ALL.value() * other.unexplained;
-        Ok(if is_known && other.log_likelihood > first.log_likelihood { &law.trials } else { acted })
+        Ok((is_known && other.log_likelihood > first.log_likelihood).then_some(law))
     }
 
     /// How the drive's refitted nominal law stands before `trials`; `None` where they show no motion of a drive.

@@ -31,6 +31,30 @@ pub struct Intervals {
     pub covariance: Vec<Vec<f64>>,
 }
 
+impl Intervals {
+    /// Changes of the values along as many independent directions that together have the values' covariance, widened to their intervals: each
+    /// value's is that of the curvature times the square of how much wider its interval is. Empty where the covariance is not known.
+    #[must_use]
+    pub fn directions(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let told: Vec<usize> = (0..self.covariance.len()).filter(|at| self.covariance[*at][*at] > 0.0).collect();
+        let deviation = |at: usize| self.covariance[at][at].sqrt();
+        let correlation = DMatrix::from_fn(told.len(), told.len(), |i, j| {
+            self.covariance[told[i]][told[j]] / (deviation(told[i]) * deviation(told[j]))
+                + if i == j { 1e-9 } else { 0.0 }
+        });
+        let Some(factors) = correlation.cholesky() else { return Vec::new() };
+        let of_direction = |direction: usize| {
+            let mut change = vec![0.0; values.len()];
+            for (row, &at) in told.iter().enumerate() {
+                let half = 0.5 * (self.ends[at][1] - self.ends[at][0]);
+                change[at] = factors.l()[(row, direction)] * half / NORMAL_97_5;
+            }
+            change
+        };
+        (0..told.len()).map(of_direction).collect()
+    }
+}
+
 impl Spread {
     /// The covariance in the units of all values: step number `n` moves value `at[n]` of `count` by `slopes[n]`.
     #[must_use]
@@ -55,6 +79,8 @@ pub struct Clusters<'a> {
     pub stretch: &'a [usize],
     /// Place of each row, as its step of the encoder, whose rounding is the same whenever it is visited; empty where nothing is shared.
     pub place: &'a [i64],
+    /// By how much one deviation of its place's rounding changes each row of the residual; empty as `place` is.
+    pub rounding: &'a [f64],
 }
 
 /// Half-widths and covariance of each value, of the linearised least squares of `residual` with the derivatives `columns` by one step of
@@ -63,8 +89,9 @@ pub struct Clusters<'a> {
 /// The covariance is H^-1 times `power`, the mean square of the residual, with H the curvature. The half-width is that of the normal
 /// distribution by this covariance, or, where that is larger, that of Student's by the jackknife over the stretches of `rows`: it holds
 /// where the residual of an imperfect law remembers. What rows of one place share beyond those of one stretch and place comes on top
-/// (clusters of two kinds: A. C. Cameron, J. B. Gelbach, D. L. Miller, *J. Bus. Econ. Stat.* 29, 2011). `priors` are what is known of each value
-/// beforehand, one over its variance in squared steps; zero where nothing is. Infinite where the curvature has no inverse.
+/// (clusters of two kinds: A. C. Cameron, J. B. Gelbach, D. L. Miller, *J. Bus. Econ. Stat.* 29, 2011), no less than what the encoder's rounding
+/// alone does: where a motion stays at few places, the values take its error up, and the residual does not show it. `priors` are what is
+/// known of each value beforehand, one over its variance in squared steps; zero where nothing is. Infinite where the curvature has no inverse.
 #[must_use]
 pub fn spread(residual: &[f64], columns: &[Vec<f64>], priors: &[f64], power: f64, rows: Clusters<'_>) -> Spread {
     let count = columns.len();
@@ -88,13 +115,14 @@ pub fn spread(residual: &[f64], columns: &[Vec<f64>], priors: &[f64], power: f64
     };
     let plain = factors.inverse();
     let score = stretches.iter().fold(DVector::zeros(count), |sum, stretch| sum + &stretch.score);
-    let shared = shared_by_place(residual, columns, &sizes, rows);
-    let shared = &plain * shared * &plain;
+    let [by_scatter, by_rounding] = [shared_by_place(residual, columns, &sizes, rows), rounded(columns, &sizes, rows)];
+    let [by_scatter, by_rounding] = [by_scatter, by_rounding].map(|scores| &plain * scores * &plain);
+    let shared = |at: usize| by_scatter[(at, at)].max(by_rounding[(at, at)]).max(0.0);
     let mut half_widths: Vec<f64> = (0..count).map(|at| NORMAL_97_5 * (power * plain[(at, at)]).sqrt()).collect();
     let mut inflations = vec![1.0; count];
     if let Some(found) = jackknife(&stretches, &curvature) {
         for (at, half) in half_widths.iter_mut().enumerate() {
-            let deviation = found.deviations[at].hypot(shared[(at, at)].max(0.0).sqrt());
+            let deviation = found.deviations[at].hypot(shared(at).sqrt());
             *half = half.max(student_97_5(found.freedoms[at]) * deviation);
             inflations[at] = (deviation * deviation / (power * plain[(at, at)])).max(1.0);
         }
@@ -154,6 +182,13 @@ fn shared_by_place(residual: &[f64], columns: &[Vec<f64>], sizes: &[f64], rows: 
     places - scatter(parts.map(|(row, (place, stretch))| ((*place, *stretch), score(row))), sizes.len())
 }
 
+/// Covariance of the score by the rounding of the encoder, which is one error for all rows of a place and another for each place (B. Widrow,
+/// I. Kollár, *Quantization Noise*, 2008, ch. 5).
+fn rounded(columns: &[Vec<f64>], sizes: &[f64], rows: Clusters<'_>) -> DMatrix<f64> {
+    let score = |row: usize| DVector::from_fn(sizes.len(), |at, _| columns[at][row] * rows.rounding[row] / sizes[at]);
+    scatter(rows.place.iter().enumerate().map(|(row, place)| (*place, score(row))), sizes.len())
+}
+
 /// What each stretch brings, with columns as long as one.
 fn stretches(residual: &[f64], columns: &[Vec<f64>], sizes: &[f64], stretch_of: &[usize]) -> Vec<Stretch> {
     let rows = stretch_of.chunk_by(|before, after| before == after).scan(0, |first, chunk| {
@@ -193,7 +228,7 @@ mod tests {
         let independent: Vec<f64> = (0..rows).map(|_| uniform()).collect();
         let plain = NORMAL_97_5 / (rows as f64).sqrt();
         let stretch = in_sixteen(rows);
-        let told = Clusters { stretch: &stretch, place: &[] };
+        let told = Clusters { stretch: &stretch, place: &[], rounding: &[] };
         let half = |residual: &[f64], prior: f64| spread(residual, &column, &[prior], 1.0, told).half_widths[0];
         let found = half(&independent, 0.0);
         // The deviation from sixteen stretches is known to 18 %, Student's point is 9 % above the normal one.
@@ -217,7 +252,7 @@ mod tests {
         let rows = 400;
         let residual: Vec<f64> = (0..rows).map(|row| if row % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let stretch = in_sixteen(rows);
-        let told = Clusters { stretch: &stretch, place: &[] };
+        let told = Clusters { stretch: &stretch, place: &[], rounding: &[] };
         let alone = spread(&residual, &[vec![1.0; rows]], &[0.0], 1.0, told);
         let beside = spread(&residual, &[vec![0.0; rows], vec![1.0; rows]], &[0.0; 2], 1.0, told);
         assert!((alone.half_widths[0] * (rows as f64).sqrt() / NORMAL_97_5 - 1.0).abs() < 1e-6);
@@ -235,11 +270,40 @@ mod tests {
         let residual: Vec<f64> = place.iter().map(|place| if (place / 2) % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let stretch = in_sixteen(rows);
         let half = |place: &[i64]| {
-            spread(&residual, &column, &[0.0], 1.0, Clusters { stretch: &stretch, place }).half_widths[0]
+            spread(&residual, &column, &[0.0], 1.0, Clusters { stretch: &stretch, place, rounding: &vec![0.0; rows] })
+                .half_widths[0]
         };
         let (alone, shared) = (half(&[]), half(&place));
         // As though each place were one row: sqrt(4000 / 50) = 8.9 times as wide, times Student's 2.13 / 1.96.
         assert!(shared / alone > 7.0 && shared / alone < 11.0, "{alone} {shared}");
+    }
+
+    /// A tool that stays at one place for 70 of 100 rows and goes to another each row else: the value takes up 0.7 of the one's rounding, of
+    /// which the residual shows nothing.
+    #[test]
+    fn where_a_motion_stays_its_rounding_stays_in_the_value() {
+        let rows = 4000;
+        let place: Vec<i64> = (0..rows).map(|row| if row % 10 < 7 { -1 } else { row as i64 }).collect();
+        let stretch = in_sixteen(rows);
+        let rows = Clusters { stretch: &stretch, place: &place, rounding: &vec![3.0; rows] };
+        let half = spread(&vec![0.0; 4000], &[vec![1.0; 4000]], &[0.0], 0.0, rows).half_widths[0];
+        let student = student_97_5(15.0);
+        assert!((half / (student * 3.0 * 0.7) - 1.0).abs() < 1e-3, "{half}");
+    }
+
+    /// Three values, of which one was not fitted: the directions have the covariance, each value as wide as its interval.
+    #[test]
+    fn independent_directions_have_the_covariance_that_the_intervals_have() {
+        let covariance = vec![vec![4.0, 0.0, -1.2], vec![0.0; 3], vec![-1.2, 0.0, 1.0]];
+        let half = [2.0, 0.0, 3.0].map(|times: f64| times * NORMAL_97_5);
+        let ends = half.iter().map(|half| [1.0 - half, 1.0 + half]).collect();
+        let directions = Intervals { ends, covariance }.directions(&[1.0; 3]);
+        let sum = |i: usize, j: usize| directions.iter().map(|direction| direction[i] * direction[j]).sum::<f64>();
+        assert_eq!(directions.len(), 2);
+        // The correlation is -1.2 / (2 x 1).
+        for (i, j, expected) in [(0, 0, 4.0), (2, 2, 9.0), (0, 2, -0.6 * 2.0 * 3.0), (1, 1, 0.0), (1, 2, 0.0)] {
+            assert!((sum(i, j) - expected).abs() < 1e-6, "{i} {j}: {}", sum(i, j));
+        }
     }
 
     #[test]
@@ -247,7 +311,8 @@ mod tests {
         // A constant that is fitted wrong by 0.3: the residual is 0.3 throughout, and a step of -1 a unit takes it off.
         let column = vec![vec![-1.0; 800]];
         let stretch = in_sixteen(800);
-        let found = spread(&[0.3; 800], &column, &[0.0], 1e-6, Clusters { stretch: &stretch, place: &[] });
+        let found =
+            spread(&[0.3; 800], &column, &[0.0], 1e-6, Clusters { stretch: &stretch, place: &[], rounding: &[] });
         assert!((found.remaining[0] - 0.3).abs() < 1e-6, "{:?}", found.remaining);
         assert!(found.half_widths[0] < 1e-4, "{:?}", found.half_widths);
     }
@@ -273,7 +338,7 @@ mod tests {
             (noise.clone(), vec![slope])
         };
         let stretch = in_sixteen(rows);
-        let told = Clusters { stretch: &stretch, place: &[] };
+        let told = Clusters { stretch: &stretch, place: &[], rounding: &[] };
         let plain = NORMAL_97_5 * deviation / (rows as f64).sqrt();
         let found = spread_over_own_width(1, told, linearised).half_widths[0];
         // See above: sixteen stretches tell it to 18 %.
@@ -290,7 +355,8 @@ mod tests {
             |first: usize| (0..140).map(|row| f64::from(u8::from((first..first + 100).contains(&row)))).collect();
         let columns: [Vec<f64>; 2] = [column(0), column(40)];
         let stretch = in_sixteen(140);
-        let found = spread(&[0.0; 140], &columns, &[0.0; 2], 1.0, Clusters { stretch: &stretch, place: &[] });
+        let found =
+            spread(&[0.0; 140], &columns, &[0.0; 2], 1.0, Clusters { stretch: &stretch, place: &[], rounding: &[] });
         let at = |i: usize, j: usize| found.covariance[i][j];
         assert!((at(0, 1) / (at(0, 0) * at(1, 1)).sqrt() + 0.6).abs() < 1e-6, "{:?}", found.covariance);
         // 100 / (100^2 - 60^2)

@@ -156,7 +156,7 @@ mod tests {
         let mut held = [[0.0; 3]; 2];
         for _ in 0..DRAWS {
             let (residual, values) = fitted(&noise(memory, &mut random), &columns);
-            let rows = Clusters { stretch: &stretch, place: &[] };
+            let rows = Clusters { stretch: &stretch, place: &[], rounding: &[] };
             let power = crate::diagnose::linalg::energy(&residual) / ROWS as f64;
             let told = spread(&residual, &columns, &[0.0; 3], power, rows).half_widths;
             for (held, half) in held.iter_mut().zip([told, sandwich(&residual, &columns)]) {

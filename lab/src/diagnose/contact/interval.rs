@@ -2,6 +2,7 @@
 
 use super::data::Data;
 use super::fit::Fit;
+use super::model::index;
 use super::rest::Rest;
 use crate::diagnose::interval::{Clusters, Intervals, spread};
 use crate::diagnose::jackknife::stretch_of_rows;
@@ -31,7 +32,9 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
     let is_stepped = data.trials.iter().all(|trial| trial.encoder_steps.len() == trial.len());
     let place: Vec<i64> =
         data.trials.iter().filter(|_| is_stepped).flat_map(|trial| trial.encoder_steps.iter().copied()).collect();
-    let found = spread(&rest.rows, &columns, &priors, rest.power, Clusters { stretch: &stretch, place: &place });
+    let rounding = if place.is_empty() { Vec::new() } else { rounding(data, fit) };
+    let rows = Clusters { stretch: &stretch, place: &place, rounding: &rounding };
+    let found = spread(&rest.rows, &columns, &priors, rest.power, rows);
     let mut all: Vec<[f64; 2]> = fit.values.iter().map(|value| [*value; 2]).collect();
     let slope = |at: &usize| if ranges[*at].by_factors { fit.values[*at] } else { ranges[*at].size };
     let covariance = found.covariance_of(fit.values.len(), &free, &free.iter().map(slope).collect::<Vec<_>>());
@@ -50,6 +53,20 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
         all[at] = [ranges[at].low, ranges[at].high].map(|bound| end_of_jump(data, fit, rest, at, bound));
     }
     Intervals { ends: all, covariance }
+}
+
+/// By how much one deviation of the position, as it is known, changes each row of the weighted residual of `fit`: by a surface that lies
+/// elsewhere.
+fn rounding(data: &Data<'_>, fit: &Fit) -> Vec<f64> {
+    let step = 1e-3 * fit.model.scales.depth;
+    let [below, above] = [-step, step].map(|moved| {
+        let mut shifted = fit.values.clone();
+        shifted[index::SURFACE] += moved;
+        data.weighted_residual(&fit.model, &shifted)
+    });
+    let variances = data.trials.iter().flat_map(|trial| &trial.position_variance);
+    let slopes = below.iter().zip(&above).map(|(below, above)| (above - below) / (2.0 * step));
+    slopes.zip(variances).map(|(slope, variance)| slope * variance.sqrt()).collect()
 }
 
 /// Which values of `fit` are instants at which its law jumps.

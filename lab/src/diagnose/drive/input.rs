@@ -21,6 +21,13 @@ impl Inputs {
         trials.par_iter().map(|trial| Self::of(trial, law)).collect()
     }
 
+    /// The same with the force of `other` on top.
+    #[must_use]
+    pub fn with_force(&self, other: &Self) -> Self {
+        let force = self.force.iter().zip(&other.force).map(|(force, other)| force + other).collect();
+        Self { effort: self.effort.clone(), force }
+    }
+
     /// Whether they are the same under `one` and `other`: actuator, force sensor and the load's factor are.
     #[must_use]
     pub fn are_alike(one: &DriveLaw, other: &DriveLaw) -> bool {

@@ -1,11 +1,15 @@
 //! 95 % intervals of a fitted drive: from the curvature of the likelihood, and from leaving out stretches of the recordings.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::fit::Fit;
 use super::likelihood::Data;
 use super::linearisation::Linearisation;
+use super::outcome::Outcome;
 use super::range::Step;
-use crate::diagnose::interval::{Clusters, spread_over_own_width};
+use crate::diagnose::interval::{Clusters, NORMAL_97_5, spread_over_own_width};
 use crate::diagnose::jackknife::stretch_of_rows;
+use crate::diagnose::linalg::dot;
 
 /// How far the values of a fit can be trusted.
 #[derive(Debug, Clone)]
@@ -27,7 +31,7 @@ pub fn intervals(data: &Data<'_>, fit: &Fit) -> Uncertainty {
     let ranges = fit.model.ranges();
     let counts: Vec<Vec<bool>> = data.scored_rows().map(|rows| vec![true; rows]).collect();
     let stretch = stretch_of_rows(&counts);
-    let rows = Clusters { stretch: &stretch, place: &[] };
+    let rows = Clusters { stretch: &stretch, place: &[], rounding: &[] };
     let at = Linearisation::of(data, &fit.model, &fit.values, &fit.noise);
     let found = spread_over_own_width(ranges.len(), rows, |apart| at.over_width(&fit.values, apart));
     let each = fit.values.iter().enumerate().map(|(at, value)| {
@@ -46,4 +50,70 @@ pub fn intervals(data: &Data<'_>, fit: &Fit) -> Uncertainty {
     let slopes: Vec<f64> = ranges.iter().zip(&fit.values).map(|(range, value)| range.slope(*value)).collect();
     let covariance = found.covariance_of(all.len(), &all, &slopes);
     Uncertainty { ends: each.collect(), covariance, inflations: found.inflations }
+}
+
+/// Widens the intervals of `outcome` by what is not known of the force that it was given: `changes` are those of the force in the recorded
+/// rows of each trial, for one deviation along each of independent directions. They move the values by a step of Gauss's and Newton's
+/// method, as in an estimate in two steps (K. M. Murphy, R. H. Topel, *J. Bus. Econ. Stat.* 3, 1985, 370).
+pub fn widen(outcome: &mut Outcome, changes: &[Vec<Vec<f64>>]) {
+    let data = Data { trials: &outcome.trials, least_encoder_variance: 0.0 };
+    let fit = &outcome.chosen;
+    let at = Linearisation::of(&data, &fit.model, &fit.values, &fit.noise);
+    let ranges = fit.model.ranges();
+    let columns = at.columns(&fit.values, &(0..ranges.len()).collect::<Vec<_>>());
+    let products = DMatrix::from_fn(ranges.len(), ranges.len(), |i, j| {
+        dot(&columns[i], &columns[j]) + if i == j { f64::MIN_POSITIVE } else { 0.0 }
+    });
+    let Some(factors) = products.cholesky() else { return };
+    let mut variances = vec![0.0; ranges.len()];
+    for change in changes {
+        let moved = at.under_force(change);
+        let score = DVector::from_iterator(ranges.len(), columns.iter().map(|column| dot(column, &moved)));
+        factors.solve(&score).iter().zip(&mut variances).for_each(|(step, variance)| *variance += step * step);
+    }
+    for (at, variance) in variances.into_iter().enumerate() {
+        let (range, value) = (&ranges[at], fit.values[at]);
+        let ends = &mut outcome.intervals[at];
+        let wider = |end: f64, sign: f64| {
+            let own = range.steps_between(value, end);
+            range.moved(value, sign * own.hypot(NORMAL_97_5 * variance.sqrt()))
+        };
+        *ends = [wider(ends[0], -1.0).max(range.low), wider(ends[1], 1.0).min(range.high)];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::identification::identify;
+    use super::super::nominal::NominalDrive;
+    use super::super::testing::TestDrive;
+    use super::*;
+
+    /// A drive under a constant load of 1 N that is given a force whose zero is known to 0.1 N: so is the load then, and nothing else is known
+    /// less for it.
+    #[test]
+    fn what_is_not_known_of_the_force_is_not_known_of_what_it_stands_for() {
+        let drive = TestDrive { load: 1.0, ..TestDrive::PLAIN };
+        let trials = vec![drive.trial(6.0, 131), drive.trial(6.0, 132)];
+        let rig = NominalDrive {
+            inertia: 0.8,
+            viscous: 4.0,
+            is_rotary: false,
+            encoder: None,
+            resolution: 1e-5,
+            effects: Vec::new(),
+        };
+        let mut outcome = identify(trials, &rig, 1, &|_| {}).expect("a drive that moves");
+        assert_eq!(outcome.chosen.model.names(), ["gravity_load"]);
+        let load = outcome.chosen.model.values_of(0).start;
+        let width = |outcome: &Outcome, at: usize| outcome.intervals[at][1] - outcome.intervals[at][0];
+        let before: Vec<f64> = (0..outcome.intervals.len()).map(|at| width(&outcome, at)).collect();
+        let zero: Vec<Vec<f64>> = outcome.trials.iter().map(|trial| vec![0.1; trial.source_time.len()]).collect();
+        widen(&mut outcome, &[zero]);
+        let told = before[load].hypot(2.0 * NORMAL_97_5 * 0.1);
+        assert!((width(&outcome, load) / told - 1.0).abs() < 1e-3, "{} {told}", width(&outcome, load));
+        for at in (0..before.len()).filter(|at| *at != load) {
+            assert!((width(&outcome, at) - before[at]).abs() <= 0.05 * before[at], "{at}: {:?}", outcome.intervals[at]);
+        }
+    }
 }

@@ -10,6 +10,7 @@ use super::model::Model;
 use super::noise::Noise;
 use super::one_body_filter::{Gains, one_body};
 use super::range::Range;
+use super::trial::DriveTrial;
 
 /// The innovations about some values, with the gains of one body held: the variance is no lever of the law.
 pub struct Linearisation<'a> {
@@ -57,10 +58,14 @@ impl<'a> Linearisation<'a> {
     pub fn passes(&self, values: &[f64]) -> Vec<Innovations> {
         let law = self.model.law(values);
         let own = (!Inputs::are_alike(&law, &self.law)).then(|| Inputs::of_all(self.data.trials, &law));
-        let inputs = own.as_ref().unwrap_or(&self.inputs);
-        let Some(gains) = &self.gains else { return self.data.innovations_under(inputs, &law, self.noise) };
+        self.under(own.as_ref().unwrap_or(&self.inputs), &law)
+    }
+
+    /// Innovations under `law` with its `inputs`.
+    fn under(&self, inputs: &[Inputs], law: &DriveLaw) -> Vec<Innovations> {
+        let Some(gains) = &self.gains else { return self.data.innovations_under(inputs, law, self.noise) };
         let each = self.data.trials.par_iter().zip(inputs).zip(gains);
-        each.map(|((trial, inputs), gains)| one_body(trial, inputs, &law, self.noise, gains, false)).collect()
+        each.map(|((trial, inputs), gains)| one_body(trial, inputs, law, self.noise, gains, false)).collect()
     }
 
     /// Standardised innovations and their derivatives by one step of each of `values`: differences from `apart` steps below the value to as
@@ -86,6 +91,24 @@ impl<'a> Linearisation<'a> {
             self.data.standardised(&self.passes(&moved), &self.base)
         });
         below.iter().zip(&above).map(|(below, above)| (above - below) / between).collect()
+    }
+
+    /// Change of the standardised innovations where the force that was recorded of each trial is more by `change`, at its recorded rows.
+    #[must_use]
+    pub fn under_force(&self, change: &[Vec<f64>]) -> Vec<f64> {
+        let more = |(trial, change): (&DriveTrial, &Vec<f64>)| DriveTrial {
+            force: Some(change.clone()),
+            ..trial.clone().without_effort()
+        };
+        let changes: Vec<DriveTrial> = self.data.trials.iter().zip(change).map(more).collect();
+        let inputs: Vec<Inputs> = self
+            .inputs
+            .iter()
+            .zip(Inputs::of_all(&changes, &self.law))
+            .map(|(all, own)| all.with_force(&own))
+            .collect();
+        let after = self.data.standardised(&self.under(&inputs, &self.law), &self.base);
+        after.iter().zip(&self.innovations).map(|(after, before)| after - before).collect()
     }
 
     /// Derivatives of the standardised innovations by one step of each value in `free`.

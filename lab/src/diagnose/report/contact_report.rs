@@ -13,6 +13,7 @@ use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::outcome::Outcome;
 use crate::diagnose::contact::trial::ContactTrial;
 use crate::diagnose::evidence::NamedTerm;
+use crate::diagnose::interval::NORMAL_97_5;
 use crate::diagnose::phase;
 use crate::diagnose::term::Term;
 use crate::diagnose::verdict::Verdict;
@@ -240,18 +241,30 @@ fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate
 fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
     let c = rig.coordinate;
     let Some(contact) = rig.contact else { return Vec::new() };
-    let row = |name: &str, unit: &str, given: f64, at: usize| Nominal {
-        name: format!("{name}_{}", slug(unit)),
-        unit: unit.to_owned(),
-        given,
-        fitted: outcome.chosen.values[at],
-        ci95: channel::told(outcome.chosen.values[at], outcome.intervals[at]),
+    let row = |name: &str, unit: &str, given: f64, at: usize| {
+        let fitted = outcome.chosen.values[at];
+        let ends = if at == index::SURFACE { ends_of_the_surface(outcome) } else { outcome.intervals[at] };
+        let ci95 = channel::told(fitted, ends);
+        Nominal { name: format!("{name}_{}", slug(unit)), unit: unit.to_owned(), given, fitted, ci95 }
     };
     vec![
         row("stiffness", c.stiffness_unit(), contact.stiffness, index::STIFFNESS),
         row("damping", c.damping_unit(), contact.damping, index::DAMPING),
         row("surface", c.position_unit(), contact.surface, index::SURFACE),
     ]
+}
+
+/// The 95 % interval of the surface's place as others measure it: an encoder begins each trial anywhere within one of its steps, which moves
+/// all of its places by one error, uniform over a step. To the force of the law it is nothing: that goes by the encoder's own places.
+fn ends_of_the_surface(outcome: &Outcome) -> [f64; 2] {
+    let fitted = outcome.chosen.values[index::SURFACE];
+    let origin = |trial: &ContactTrial| trial.figures.position.resolution.powi(2) / 12.0;
+    let trials = outcome.trials.len().max(1) as f64;
+    let deviation = outcome.trials.iter().map(origin).sum::<f64>().sqrt() / trials;
+    outcome.intervals[index::SURFACE].map(|end| {
+        let half = (end - fitted).hypot(NORMAL_97_5 * deviation);
+        if end < fitted { fitted - half } else { fitted + half }
+    })
 }
 
 /// Of the values that the report shows.
