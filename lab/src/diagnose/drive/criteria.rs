@@ -86,6 +86,10 @@ thresholds! { "drive";
     LEAST_OUTSIDE_SHARE = 0.5, "1", chosen;
     /// Share of the time that they may last: beyond it they are what usually happens.
     MOST_OUTSIDE_TIME = 0.4, "1", chosen;
+    /// Factor between steps of an encoder that is taken for coarser than it is: the root of ten.
+    COARSER = 3.162, "1", chosen;
+    /// Coarsest step that is tried, over the travel or a turn: a hundredth leaves a motion to see. Chosen.
+    MOST_COARSE = 0.01, "1", chosen;
 }
 
 /// Fewest rows of a block.

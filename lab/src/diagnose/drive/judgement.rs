@@ -41,6 +41,7 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         band_hz: search.band_hz,
         nominal: search.nominal.clone(),
         outside_forces: Vec::new(),
+        coarser_step: None,
         chosen: fit,
     }
 }

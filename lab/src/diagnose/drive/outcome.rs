@@ -33,6 +33,8 @@ pub struct Outcome {
     pub band_hz: f64,
     /// Stretches in which something from outside pushes, left out of everything else.
     pub outside_forces: Vec<Stretch>,
+    /// Step, m or rad, of the coarser encoder that it was taken for, where only the slower motion follows a law.
+    pub coarser_step: Option<f64>,
 }
 
 impl Outcome {

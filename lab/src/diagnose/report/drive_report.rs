@@ -16,6 +16,7 @@ use crate::diagnose::drive::outside_force::Stretch;
 use crate::diagnose::drive::term::Term;
 use crate::diagnose::verdict::Verdict;
 use crate::effects::{self, Place, slug};
+use crate::page::quantity;
 use crate::rig::{Coordinate, Drive, Rig};
 
 /// The channel's name in the JSON.
@@ -84,7 +85,11 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig, touched: Option<&Touched>) -> 
             .filter(|spec| spec.place == Place::Drive)
             .map(|spec| spec.name)
             .collect(),
-        findings: outside_forces(outcome).into_iter().chain(load_at_its_end(outcome)).collect(),
+        findings: outside_forces(outcome)
+            .into_iter()
+            .chain(load_at_its_end(outcome))
+            .chain(slower_motion(outcome, coordinate))
+            .collect(),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
     let first_effect = diagnosis.physics.first().map(|physics| physics.name.as_str());
@@ -133,6 +138,21 @@ fn load_at_its_end(outcome: &Outcome) -> Option<Finding> {
         text: format!(
             "The given load fits best times {factor:.2}, the furthest that is tried: either it is wrong by more, or this motion hardly \
              tells it from the inertia. Check its masses, or record slow motion, in which a load acts and an inertia does not."
+        ),
+    })
+}
+
+/// That a law was found of the slower motion alone.
+fn slower_motion(outcome: &Outcome, coordinate: Coordinate) -> Option<Finding> {
+    let step = quantity::rounded(outcome.coarser_step?, coordinate.position_unit(), 2);
+    Some(Finding {
+        code: "slower_motion_alone",
+        grave: false,
+        place: "drive".to_owned(),
+        text: format!(
+            "From row to row the position moves faster than any force on the inertia could move it, as where a gear rattles or an arm \
+             bends between the motor and the load. The law is that of the slower motion, seen as by an encoder with steps of {step}; what \
+             happens faster is unknown."
         ),
     })
 }
