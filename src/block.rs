@@ -8,6 +8,7 @@
 //! ```
 
 mod adaptive_window;
+mod centre;
 mod compensated_sums;
 mod config;
 pub mod direct;

@@ -9,12 +9,12 @@
 //! - A sample that does not fit the scale begins another run at once, which holds the newest samples, while the first holds the others. At
 //!   each update one sample is transferred, until the first is empty.
 
+use crate::block::centre::{is_moderate, suits_better};
 use crate::block::config::BlockConfig;
 use crate::block::integer_sums::{ExactRun, Scale, bits_for};
 use crate::block::second_order::{Moments, SecondOrderSums};
 use crate::block::window_sums::{CentredMoments, WindowSums};
 use crate::contact::{Impedance, Observation};
-use crate::math::sym2::Sym2;
 use crate::window::Recent;
 
 /// Window below which all samples are summed at every update, which costs no more there.
@@ -25,18 +25,6 @@ const CHECK_INTERVAL: u16 = 16;
 
 /// Updates until the first check: so many samples tell two unknowns.
 const FIRST_CHECK: u16 = 8;
-
-/// Share of the residual energy about the centre above which the estimate does not become the new centre.
-const MAX_REMAINING_FRACTION: f32 = 0.25;
-
-/// Share of the energy of the predicted force above which a move of the centre is no small part.
-const MAX_MOVE_FRACTION: f32 = 0.5;
-
-/// Multiple of B's own part of the right side from which on the other parts' rounding matters: 16 last digits are 1e-6 of B.
-const MAX_CANCELLATION: f32 = 16.0;
-
-/// Magnitude of a centre beyond which its residuals could leave the finite numbers.
-const MAX_CENTRE: f32 = 1e30;
 
 /// What the second run of [`ExactSums`] is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -255,26 +243,6 @@ impl ExactSums {
         let turn = self.run.centre.moved(-1.0, self.second.centre);
         self.second.moments().shifted(turn).with(&self.run.moments())
     }
-}
-
-fn is_moderate(centre: Impedance) -> bool {
-    centre.stiffness.abs() + centre.damping.abs() <= MAX_CENTRE
-}
-
-/// Whether `estimate` is to become the centre of `run`: it leaves much less of the residual, and rounding about the old centre would show.
-/// That is so where the move is no small part of the estimate, and where B has to be separated from the much larger part that K has in the
-/// right side, or from columns that are nearly in line.
-fn suits_better(estimate: Impedance, run: &ExactRun) -> bool {
-    let sums = run.moments();
-    let move_to = estimate.moved(-1.0, run.centre);
-    if sums.shifted(move_to).residual_energy > MAX_REMAINING_FRACTION * sums.residual_energy {
-        return false;
-    }
-    let Sym2 { xx, xv, vv } = sums.regressors;
-    let parts = (xv * sums.residual.stiffness).abs() + (xx * sums.residual.damping).abs();
-    let own = (xx * vv - xv * xv) * estimate.damping;
-    let far = sums.regressors.quadratic(move_to) > MAX_MOVE_FRACTION * sums.regressors.quadratic(estimate);
-    far || parts > MAX_CANCELLATION * own.abs()
 }
 
 impl WindowSums for ExactSums {
