@@ -37,10 +37,10 @@ impl Solution {
 
     fn plain(sums: &SecondOrderSums, samples: f32, config: &BlockConfig) -> Self {
         let moving = sums.regressors.vv > samples * (config.rate_floor * config.rate_floor);
-        if let Some(inverse) = sums.regressors.invert(config.independence_floor).filter(|_| moving) {
-            let correction = inverse.times(sums.residual);
+        if let Some(regressors) = sums.regressors.factored(config.independence_floor).filter(|_| moving) {
+            let correction = regressors.solve(sums.residual);
             if correction.is_finite() {
-                return Self { correction, inverse, flags: Flags::empty() };
+                return Self { correction, inverse: regressors.inverse(), flags: Flags::empty() };
             }
         }
         let stiffness = sums.residual.stiffness / sums.regressors.xx;

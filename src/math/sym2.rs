@@ -55,7 +55,7 @@ impl Sym2 {
         }
     }
 
-    /// Solves `self * y = [a, b]` by eliminating the first column (Schur complement); `None` where
+    /// Solves `self * y = [a, b]` by the inverse, which eliminates the first column (Schur complement); `None` where
     /// [`Self::independence`] is at most `floor`. For a positive semidefinite matrix.
     pub fn solve(self, right: Impedance, floor: f32) -> Option<Impedance> {
         self.invert(floor).map(|inverse| inverse.times(right))
@@ -63,15 +63,24 @@ impl Sym2 {
 
     /// The inverse of a positive definite matrix; `None` where [`Self::independence`] is at most `floor`. It is infinite where
     /// the inverse of an entry is beyond the range.
-    #[inline(always)]
     pub fn invert(self, floor: f32) -> Option<Self> {
+        self.factored(floor).map(Factored::inverse)
+    }
+
+    /// A positive definite matrix, factored; `None` where [`Self::independence`] is at most `floor`.
+    #[inline(always)]
+    pub fn factored(self, floor: f32) -> Option<Factored> {
+        if self.xx > 0.0 { self.factored_semidefinite(floor) } else { None }
+    }
+
+    /// The same of a matrix that is known to be positive semidefinite: where `xx` is zero, what is left is no number.
+    #[inline(always)]
+    pub fn factored_semidefinite(self, floor: f32) -> Option<Factored> {
         let ratio = self.xv / self.xx;
         let left = self.vv - ratio * self.xv;
         // The independence is `left / vv`.
-        if self.xx > 0.0 && left > floor * self.vv {
-            let vv = 1.0 / left;
-            let xv = -ratio * vv;
-            Some(Self { xx: 1.0 / self.xx - ratio * xv, xv, vv })
+        if left > floor * self.vv {
+            Some(Factored { xv: self.xv, ratio, of_xx: 1.0 / self.xx, of_left: 1.0 / left })
         } else {
             None
         }
@@ -94,6 +103,32 @@ impl Sym2 {
     /// Whether all three entries and their sum are finite: one test instead of three.
     pub fn is_finite(self) -> bool {
         (self.xx + self.xv + self.vv).is_finite()
+    }
+}
+
+/// A matrix as `L diag(xx, left) L'` with `L = [[1, 0], [ratio, 1]]`, where `left` is the Schur complement of `xx`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Factored {
+    xv: f32,
+    ratio: f32,
+    /// Inverses of `xx` and `left`, which the solution and the inverse share.
+    of_xx: f32,
+    of_left: f32,
+}
+
+impl Factored {
+    /// Solves `matrix * y = right` by elimination of the first unknown: no more rounding than by the inverse, and fewer instructions.
+    #[inline(always)]
+    pub fn solve(self, right: Impedance) -> Impedance {
+        let damping = (right.damping - self.ratio * right.stiffness) * self.of_left;
+        Impedance { stiffness: (right.stiffness - self.xv * damping) * self.of_xx, damping }
+    }
+
+    /// The inverse; infinite where the inverse of an entry is beyond the range.
+    #[inline(always)]
+    pub fn inverse(self) -> Sym2 {
+        let xv = -self.ratio * self.of_left;
+        Sym2 { xx: self.of_xx - self.ratio * xv, xv, vv: self.of_left }
     }
 }
 
