@@ -32,7 +32,8 @@ enum SecondUse {
     /// Out of use.
     #[default]
     Unused,
-    /// Being prepared: it holds so many of the newest samples, which the first run holds as well.
+    /// Being prepared: it holds so many of the newest samples, which the first run holds as well. Once these are all, it takes the place of
+    /// the first at the next update.
     Prepared(u16),
     /// It holds so many of the oldest samples, which the first run does not hold.
     Older(u16),
@@ -54,12 +55,19 @@ pub struct ExactSums {
     check_interval: u16,
     /// The next check is that of the scale.
     scale_is_next: bool,
-    /// Updates until the next check or the next sample of a prepared run; zero while samples are being transferred.
-    due: u16,
-    /// Length of the window that the usual update goes on with: one more than `fill`, or all. Zero, which none is, where `due` is.
+    /// The run is all of the window: no samples are being transferred, and the window is not a short one.
+    is_whole: bool,
+    /// Updates until one that has more to do: a check, a sample of a prepared run, or one that is transferred.
+    usual_left: u16,
+    /// Length of the window that an update goes on with: one more than `fill`, or all.
     expected: u16,
-    /// Length of the window from which on it is solved without a prior; beyond all where there is one.
-    solved_from: u16,
+    /// Square of the rate in whole numbers whose rms holds B; infinite where the run does not tell the least-squares solution: with a prior,
+    /// in a window that is too young or was so at the last check, and while samples are being transferred.
+    rate_energy: f32,
+    /// The same times the samples in the window.
+    least_rate_energy: f32,
+    /// [`BlockConfig::independence_floor`].
+    independence_floor: f32,
 }
 
 impl ExactSums {
@@ -75,8 +83,8 @@ impl ExactSums {
         }
         self.fill = u16::try_from(recent.len()).unwrap_or(u16::MAX);
         self.check_interval = CHECK_INTERVAL.min(config.window / 2);
-        self.solved_from = if config.prior.is_some() { u16::MAX } else { config.minimum_fill };
-        (self.second_use, self.due, self.scale_is_next) = (SecondUse::Unused, FIRST_CHECK, false);
+        self.independence_floor = config.independence_floor;
+        (self.second_use, self.usual_left, self.scale_is_next) = (SecondUse::Unused, FIRST_CHECK, false);
     }
 
     /// Sums all of `recent`; whether every sample fits the scale.
@@ -94,64 +102,21 @@ impl ExactSums {
         self.limit.trailing_zeros()
     }
 
-    /// An update at the begin of a window, while samples are being transferred, or with a sample that does not fit the scale.
-    #[cold]
-    #[inline(never)]
-    fn push_unusual(
-        &mut self,
-        config: &BlockConfig,
-        (older, newer): (&[Observation], &[Observation]),
-        estimate: Impedance,
-    ) {
-        let recent = &Recent::of_runs(older, newer);
-        let fill = if self.fill == config.window { self.fill } else { self.fill + 1 };
-        let newest = recent.newest().unwrap_or_default();
-        if config.window < MIN_WINDOW {
-            self.run.centre = estimate;
-            return;
-        }
-        if self.fill == 0 || recent.len() != usize::from(fill) {
-            self.rebuild(config, recent, estimate);
-        } else if self.due == 0 || !self.run.replace(&newest, &self.leaving, self.limit) {
-            self.transfer(config, recent, &newest);
-        } else {
-            self.fill = fill;
-            self.due -= 1;
-            if self.due == 0 {
-                self.maintain((older, newer), estimate);
-            }
-        }
-        let full = self.fill == config.window;
-        self.leaving = recent.oldest().filter(|_| full).unwrap_or_default();
-        self.expected = match self.due {
-            0 => 0,
-            _ if full => self.fill,
-            _ => self.fill + 1,
-        };
+    /// After a change of the scale, and where an update is to come to a window of `length`.
+    fn renew_least_rate_energy(&mut self, config: &BlockConfig, length: u16) {
+        let is_told = self.is_whole && config.prior.is_none() && length >= config.minimum_fill;
+        self.rate_energy = if is_told { self.run.rate_energy(config.rate_floor) } else { f32::INFINITY };
+        self.least_rate_energy = f32::from(length) * self.rate_energy;
     }
 
-    /// The usual update: one run, a window as long as it was expected, and a sample that fits the scale. Else nothing is done.
-    ///
-    /// What is rare is handed over in registers: a `Recent` would be stored for it at each update.
+    /// The window comes to a `length` that is not all of it. At the update that fills it there is a check, which sees to the rest.
     #[inline(always)]
-    fn push_usual(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) -> bool {
-        let (older, newer) = recent.runs();
-        let length = older.len() + newer.len();
-        let (true, [.., newest]) = (length == usize::from(self.expected), newer) else { return false };
-        if !self.run.replace(newest, &self.leaving, self.limit) {
-            return false;
+    fn grow(&mut self, config: &BlockConfig, length: u16) {
+        self.expected = length + 1;
+        if self.expected == config.window {
+            self.usual_left = 0;
         }
-        self.fill = length as u16;
-        if length < usize::from(config.window) {
-            self.expected = length as u16 + 1;
-        } else if let [oldest, ..] = if older.is_empty() { newer } else { older } {
-            self.leaving = *oldest;
-        }
-        self.due -= 1;
-        if self.due == 0 {
-            self.maintain((older, newer), estimate);
-        }
-        true
+        self.least_rate_energy = f32::from(length) * self.rate_energy;
     }
 
     /// Takes in the newest sample, removes the oldest, and transfers the newest of the older run.
@@ -163,7 +128,7 @@ impl ExactSums {
                 self.second = self.run;
                 let scale = self.run.scale.coarser(newest, residual, self.bits());
                 self.run.restart(self.run.centre, &scale);
-                self.due = 0;
+                self.usual_left = 0;
                 self.fill
             }
         };
@@ -181,7 +146,7 @@ impl ExactSums {
         let fits = self.run.add(newest, &transferred, self.limit);
         self.second_use = SecondUse::Older(older);
         if older == 0 {
-            (self.second_use, self.due) = (SecondUse::Unused, self.check_interval);
+            self.release_second();
         }
         if !fits {
             // Twice within a window beyond the scale, by a factor of 128 each time.
@@ -189,30 +154,45 @@ impl ExactSums {
         }
     }
 
-    /// Checks centre and scale, or prepares another run.
+    /// Before an update: checks centre and scale, or goes on with the second run. `false` where the update is not a usual one.
     #[cold]
     #[inline(never)]
-    fn maintain(&mut self, (older, newer): (&[Observation], &[Observation]), estimate: Impedance) {
+    fn maintain(
+        &mut self,
+        config: &BlockConfig,
+        (older, newer): (&[Observation], &[Observation]),
+        estimate: &Impedance,
+    ) -> bool {
         let recent = &Recent::of_runs(older, newer);
         let newest = recent.newest().unwrap_or_default();
-        if let SecondUse::Prepared(count) = self.second_use {
-            self.prepare(recent, &newest, count);
-        } else {
-            self.check(&newest, estimate);
+        let mut renewed = self.fill < config.window;
+        match self.second_use {
+            SecondUse::Unused => self.check(&newest, *estimate),
+            SecondUse::Prepared(count) if count < self.fill => self.prepare(recent, &newest, count),
+            SecondUse::Prepared(_) => {
+                self.run = self.second;
+                self.release_second();
+                renewed = true;
+            }
+            SecondUse::Older(_) => return false,
         }
+        if renewed {
+            self.renew_least_rate_energy(config, self.expected);
+        }
+        true
+    }
+
+    fn release_second(&mut self) {
+        (self.second_use, self.usual_left) = (SecondUse::Unused, self.check_interval - 1);
     }
 
     /// Two more samples of the run that is being prepared: the newest, and the newest of those that it does not hold.
     fn prepare(&mut self, recent: &Recent<'_>, newest: &Observation, count: u16) {
-        let is_last = count + 1 >= self.fill;
+        let is_last = count + 1 >= self.expected;
         let older = if is_last { None } else { recent.before_newest(usize::from(count) + 1) };
-        let fits = self.second.add(newest, &older.unwrap_or_default(), self.limit);
-        (self.second_use, self.due) = (SecondUse::Prepared(count + 2), 1);
-        if count + 2 >= self.fill || !fits {
-            if fits {
-                self.run = self.second;
-            }
-            (self.second_use, self.due) = (SecondUse::Unused, self.check_interval);
+        self.second_use = SecondUse::Prepared(count + 2);
+        if !self.second.add(newest, &older.unwrap_or_default(), self.limit) {
+            self.release_second();
         }
     }
 
@@ -226,10 +206,10 @@ impl ExactSums {
             centre = Some(estimate);
         }
         self.scale_is_next = !self.scale_is_next;
-        self.due = self.check_interval;
+        self.usual_left = self.check_interval - 1;
         if centre.is_some() || scale.is_some() {
             self.second.restart(centre.unwrap_or(self.run.centre), &scale.unwrap_or(self.run.scale));
-            (self.second_use, self.due) = (SecondUse::Prepared(0), 1);
+            (self.second_use, self.usual_left) = (SecondUse::Prepared(0), 0);
         }
     }
 
@@ -250,27 +230,76 @@ impl WindowSums for ExactSums {
 
     #[inline(always)]
     fn push(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) {
-        if !self.push_usual(config, recent, estimate) {
+        if !self.push_usual(config, recent, &estimate) {
             self.push_unusual(config, recent.runs(), estimate);
         }
+    }
+
+    /// One run, a window as long as it was expected, and a sample that fits the scale.
+    #[inline(always)]
+    fn push_usual(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: &Impedance) -> bool {
+        let (older, newer) = recent.runs();
+        let length = older.len() + newer.len();
+        let (true, [.., newest]) = (length == usize::from(self.expected), newer) else { return false };
+        if let Some(left) = self.usual_left.checked_sub(1) {
+            self.usual_left = left;
+        } else if !self.maintain(config, (older, newer), estimate) {
+            return false;
+        }
+        let mut next = &Observation { penetration: 0.0, rate: 0.0, force: 0.0 };
+        if length < usize::from(config.window) {
+            self.grow(config, length as u16);
+        } else if let [oldest, ..] = if older.is_empty() { newer } else { older } {
+            next = oldest;
+        }
+        let Some(new) = self.run.fitting(newest, self.limit) else {
+            self.expected = length as u16;
+            return false;
+        };
+        self.fill = length as u16;
+        self.run.replace(new, &mut self.leaving, next);
+        true
+    }
+
+    /// An update at the begin of a window, while samples are being transferred, or with a sample that does not fit the scale.
+    #[cold]
+    #[inline(never)]
+    fn push_unusual(
+        &mut self,
+        config: &BlockConfig,
+        (older, newer): (&[Observation], &[Observation]),
+        estimate: Impedance,
+    ) {
+        let recent = &Recent::of_runs(older, newer);
+        if config.window < MIN_WINDOW {
+            self.run.centre = estimate;
+            return;
+        }
+        if self.fill == 0 || recent.len() != usize::from(self.expected) {
+            self.rebuild(config, recent, estimate);
+        } else {
+            self.transfer(config, recent, &recent.newest().unwrap_or_default());
+        }
+        let full = self.fill == config.window;
+        self.leaving = recent.oldest().filter(|_| full).unwrap_or_default();
+        self.expected = if full { self.fill } else { self.fill + 1 };
+        self.is_whole = !matches!(self.second_use, SecondUse::Older(_));
+        self.renew_least_rate_energy(config, self.fill);
     }
 
     #[inline(always)]
     fn centred_moments(&self, recent: &Recent<'_>, _: Impedance) -> CentredMoments<SecondOrderSums> {
-        let moments = if self.due > 0 { self.run.moments() } else { self.unusual_moments(recent) };
+        let moments = if self.is_whole { self.run.moments() } else { self.unusual_moments(recent) };
         CentredMoments { centre: self.run.centre, moments }
     }
 
     #[inline(always)]
-    fn push_and_solve(&mut self, config: &BlockConfig, recent: &Recent<'_>, estimate: Impedance) -> Option<Impedance> {
-        if !self.push_usual(config, recent, estimate) {
-            self.push_unusual(config, recent.runs(), estimate);
-            return None;
-        }
-        if recent.len() < usize::from(self.solved_from) {
-            return None;
-        }
-        self.run.plain_least_squares(config, recent.len() as f32)
+    fn least_squares(&self) -> Option<Impedance> {
+        self.run.plain_least_squares(self.independence_floor, self.least_rate_energy)
+    }
+
+    fn usual_moments(&self) -> (CentredMoments<SecondOrderSums>, u16) {
+        (CentredMoments { centre: self.run.centre, moments: self.run.moments() }, self.fill)
     }
 }
 

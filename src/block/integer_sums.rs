@@ -2,7 +2,6 @@
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use crate::block::config::BlockConfig;
 use crate::block::second_order::SecondOrderSums;
 use crate::contact::{Impedance, Observation};
 use crate::front_end::Units;
@@ -170,24 +169,28 @@ struct IntegerSums {
 }
 
 impl IntegerSums {
-    /// Adds `new` and removes `old`.
+    /// Adds `new` and removes `old`; `[xv, xe, ve]` are those of the sums as they stand.
     ///
     /// Squares by `a^2 - b^2 = (a - b) (a + b)`, products by `a c - b d = (a - b) c + b (c - d)`. Each sum is stored before the next is
     /// formed: eight sums of 64 bits are more than the registers of the core, and where the compiler kept them there it moved them to the
-    /// stack and back.
+    /// stack and back. Of the orders that were tried this one takes the fewest instructions.
     #[inline(always)]
-    fn replace(&mut self, new: FixedPoint, old: FixedPoint) {
+    fn replace(&mut self, [xv, xe, ve]: [i64; 3], new: FixedPoint, old: FixedPoint) {
         let FixedPoint { penetration: x, rate: v, residual: e } = new;
         let FixedPoint { penetration: old_x, rate: old_v, residual: old_e } = old;
         let change = [x.wrapping_sub(old_x), v.wrapping_sub(old_v), e.wrapping_sub(old_e)];
-        add_product(&mut self.xx, change[0], x.wrapping_add(old_x));
-        add_in_turn(&mut self.xv, [change[0], v], [old_x, change[1]]);
-        add_in_turn(&mut self.xe, [change[0], e], [old_x, change[2]]);
-        add_in_turn(&mut self.ve, [change[1], e], [old_v, change[2]]);
-        add_product(&mut self.x, change[0], 1);
-        add_product(&mut self.vv, change[1], v.wrapping_add(old_v));
-        add_product(&mut self.v, change[1], 1);
-        add_product(&mut self.ee, change[2], e.wrapping_add(old_e));
+        self.xe = with_product(with_product(xe, change[0], e), old_x, change[2]);
+        in_turn(&mut self.xv, |_| with_product(with_product(xv, change[0], v), old_x, change[1]));
+        in_turn(&mut self.ve, |_| with_product(with_product(ve, change[1], e), old_v, change[2]));
+        for (sum, change, both) in [
+            (&mut self.ee, change[2], e.wrapping_add(old_e)),
+            (&mut self.vv, change[1], v.wrapping_add(old_v)),
+            (&mut self.v, change[1], 1),
+            (&mut self.xx, change[0], x.wrapping_add(old_x)),
+            (&mut self.x, change[0], 1),
+        ] {
+            in_turn(sum, |sum| with_product(sum, change, both));
+        }
     }
 }
 
@@ -203,25 +206,25 @@ impl IntegerSums {
         add_products(&mut self.xx, [with_x, x], [with_other_x, other_x]);
         add_products(&mut self.xv, [with_x, v], [with_other_x, other_v]);
         add_products(&mut self.xe, [with_x, e], [with_other_x, other_e]);
-        add_product(&mut self.x, with_x.wrapping_add(with_other_x), 1);
+        self.x = with_product(self.x, with_x.wrapping_add(with_other_x), 1);
         add_products(&mut self.vv, [with_v, v], [with_other_v, other_v]);
         add_products(&mut self.ve, [with_v, e], [with_other_v, other_e]);
-        add_product(&mut self.v, with_v.wrapping_add(with_other_v), 1);
+        self.v = with_product(self.v, with_v.wrapping_add(with_other_v), 1);
         add_products(&mut self.ee, [with_e, e], [with_other_e, other_e]);
     }
 }
 
+/// Takes `value` once all sums before it are stored.
 #[inline(always)]
-fn add_product(sum: &mut i64, a: i32, b: i32) {
-    *sum = sum.wrapping_add(i64::from(a) * i64::from(b));
+fn in_turn(sum: &mut i64, value: impl FnOnce(i64) -> i64) {
     compiler_fence(Ordering::SeqCst);
+    *sum = value(*sum);
 }
 
-/// Adds one product after the other, each by one multiplication with accumulation. Both at once are a multiplication more, and an addition.
+/// `sum + a b`.
 #[inline(always)]
-fn add_in_turn(sum: &mut i64, [a, b]: [i32; 2], [c, d]: [i32; 2]) {
-    add_product(sum, a, b);
-    add_product(sum, c, d);
+fn with_product(sum: i64, a: i32, b: i32) -> i64 {
+    sum.wrapping_add(i64::from(a) * i64::from(b))
 }
 
 #[inline(always)]
@@ -250,21 +253,35 @@ impl ExactRun {
         self.sums = IntegerSums::default();
     }
 
-    #[inline(always)]
-    fn quantize(&self, o: &Observation) -> FixedPoint {
-        self.scale.quantize(o, o.residual(self.centre))
+    /// The square of `rate` in whole numbers.
+    pub fn rate_energy(&self, rate: f32) -> f32 {
+        let rate = rate * self.scale.rate;
+        rate * rate
     }
 
-    /// Adds `new` and removes `old`, which is in, or is the default sample, which is nothing. Where `new` in whole numbers is not
-    /// below `limit`, nothing is done.
+    /// `o` in whole numbers of the scale. The residual is formed with one operation less than [`Observation::residual`] has.
     #[inline(always)]
-    pub fn replace(&mut self, new: &Observation, old: &Observation, limit: i32) -> bool {
-        let fixed = self.quantize(new);
-        let fits = fixed.is_below(limit);
-        if fits {
-            self.sums.replace(fixed, self.quantize(old));
-        }
-        fits
+    pub fn quantize(&self, o: &Observation) -> FixedPoint {
+        let Impedance { stiffness, damping } = self.centre;
+        self.scale.quantize(o, o.force - stiffness * o.penetration - damping * o.rate)
+    }
+
+    /// The same where they are below `limit`.
+    #[inline(always)]
+    pub fn fitting(&self, o: &Observation, limit: i32) -> Option<FixedPoint> {
+        let fixed = self.quantize(o);
+        fixed.is_below(limit).then_some(fixed)
+    }
+
+    /// Adds `new` and removes `old`, which is in, or is the default sample, which is nothing. `next` takes the place of `old`.
+    #[inline(always)]
+    pub fn replace(&mut self, new: FixedPoint, old: &mut Observation, next: &Observation) {
+        // Looked up before `old`: of several numbers the compiler adds those first that are known first, and a product that is added to
+        // its sum is one multiplication with accumulation.
+        let products = [self.sums.xv, self.sums.xe, self.sums.ve];
+        let leaving = self.quantize(old);
+        self.sums.replace(products, new, leaving);
+        *old = *next;
     }
 
     /// Adds `a` and `b`; whether both are below `limit` in whole numbers, without which the sums are of no use.
@@ -294,27 +311,26 @@ impl ExactRun {
         }
     }
 
-    /// The least-squares solution, in internal units, without a prior; `None` where it cannot tell B, or is not finite.
+    /// The least-squares solution, in internal units, without a prior; `None` where it cannot tell B, or is not finite. B is told where the
+    /// sum of the squares of rates, in whole numbers, is above `least_rate_energy`.
     ///
-    /// It is solved in whole numbers of the scale, with the inverse as [`Sym2::invert`] has it. Their units are powers of two, so each
+    /// It is solved in whole numbers of the scale, as [`Factored::solve`] does it. Their units are powers of two, so each
     /// step rounds as that of [`Solution`] does, which solves in internal units.
     ///
+    /// [`Factored::solve`]: crate::math::sym2::Factored::solve
     /// [`Solution`]: crate::block::solution::Solution
     #[inline(always)]
-    pub fn plain_least_squares(&self, config: &BlockConfig, samples: f32) -> Option<Impedance> {
+    pub fn plain_least_squares(&self, independence_floor: f32, least_rate_energy: f32) -> Option<Impedance> {
         let (s, scale) = (&self.sums, &self.scale);
-        let [xx, xv, vv] = [s.xx, s.xv, s.vv].map(single);
-        let ratio = xv / xx;
-        let left = vv - ratio * xv;
-        let rate_floor = config.rate_floor * scale.rate;
-        // Sums of squares are not negative; where that of x is zero, what is left is no number.
-        if !(left > config.independence_floor * vv && vv > samples * (rate_floor * rate_floor)) {
+        let vv = single(s.vv);
+        if !(vv > least_rate_energy) {
             return None;
         }
-        let of_rate = 1.0 / left;
-        let of_both = -ratio * of_rate;
-        let inverse = Sym2 { xx: 1.0 / xx - ratio * of_both, xv: of_both, vv: of_rate };
-        let correction = inverse.times(Impedance { stiffness: single(s.xe), damping: single(s.ve) });
+        // A branch of its own: as one with the next, each of its instructions became a conditional one.
+        compiler_fence(Ordering::SeqCst);
+        let [xx, xv] = [s.xx, s.xv].map(single);
+        let regressors = Sym2 { xx, xv, vv }.factored_semidefinite(independence_floor)?;
+        let correction = regressors.solve(Impedance { stiffness: single(s.xe), damping: single(s.ve) });
         let solution = Impedance {
             stiffness: self.centre.stiffness + correction.stiffness * scale.penetration * scale.force_unit,
             damping: self.centre.damping + correction.damping * scale.rate * scale.force_unit,

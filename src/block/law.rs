@@ -53,13 +53,7 @@ impl<'a, M: WindowSums> WindowView<'a, M> {
         local: &'a mut CentredMoments<M::CentredMoments>,
     ) -> Self {
         let samples = recent.len() as f32;
-        let mut solution = Solution::of(local.moments.second(), samples, config, local.centre);
-        if !solution.flags.is_empty() && local.centre != estimate {
-            // What is held is held where the estimate is.
-            local.moments = local.moments.shifted(estimate.moved(-1.0, local.centre));
-            local.centre = estimate;
-            solution = Solution::of(local.moments.second(), samples, config, estimate);
-        }
+        let solution = local.solution(samples, config, estimate);
         Self { config, recent, memory, estimate, samples, local, solution }
     }
 
@@ -78,20 +72,14 @@ pub trait Criterion {
     /// The move from the estimate of `view`.
     fn advance(&self, view: &WindowView<'_, Self::WindowSums>) -> CriterionStep;
 
-    /// Takes in the newest of `recent`; the estimate after `estimate`, without what tells of its quality.
+    /// Takes in the newest of `recent`, and moves the estimate, without what tells of its quality.
+    // The estimate is looked up where it is needed: kept aside for what is rare it would be moved at each update.
     #[inline(always)]
-    fn update_estimate(
-        &self,
-        config: &BlockConfig,
-        memory: &mut Self::WindowSums,
-        recent: &Recent<'_>,
-        estimate: Impedance,
-    ) -> Impedance {
-        memory.push(config, recent, estimate);
-        if recent.len() < usize::from(config.minimum_fill) {
-            return estimate;
+    fn update_estimate(&self, config: &BlockConfig, state: &mut BlockState<Self::WindowSums>, recent: &Recent<'_>) {
+        state.memory.push(config, recent, state.estimate);
+        if recent.len() >= usize::from(config.minimum_fill) {
+            state.estimate = self.advance_estimate(config, &state.memory, recent, state.estimate);
         }
-        self.advance_estimate(config, memory, recent, estimate)
     }
 
     /// The estimate after `estimate`, without what tells of its quality; the same where the next is not finite.
@@ -122,7 +110,7 @@ impl<C: Criterion> BlockLaw<C> {
     pub fn update_estimate(&self, state: &mut BlockState<C::WindowSums>, recent: Recent<'_>) -> f32 {
         let recent = &recent.last(self.window());
         let innovation = recent.newest().unwrap_or_default().residual(state.estimate);
-        state.estimate = self.criterion.update_estimate(&self.config, &mut state.memory, recent, state.estimate);
+        self.criterion.update_estimate(&self.config, state, recent);
         innovation
     }
 }
