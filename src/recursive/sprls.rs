@@ -121,6 +121,7 @@ impl Sprls {
         let gain = covariance.observe_with(o, 1.0, 1.0);
         let level = self.level(state.innovation_before);
         if level >= Self::HALF_STEP {
+            kicked();
             // Not limited: a perturbation beyond the limit takes the covariance beyond it as well, which is then not plain.
             covariance.inflate(self.config.perturbation_gain * nearest(level));
         }
@@ -153,6 +154,11 @@ impl Sprls {
         (innovation, gain, flags)
     }
 }
+
+/// Tells the compiler that a kick is rare, so that the usual update runs straight through.
+#[cold]
+#[inline]
+fn kicked() {}
 
 impl UpdateLaw for Sprls {
     type State = SprlsState;
