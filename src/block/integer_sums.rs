@@ -323,7 +323,7 @@ impl ExactRun {
     pub fn plain_least_squares(&self, independence_floor: f32, least_rate_energy: f32) -> Option<Impedance> {
         let (s, scale) = (&self.sums, &self.scale);
         let vv = single(s.vv);
-        if !(vv > least_rate_energy) {
+        if vv <= least_rate_energy {
             return None;
         }
         // A branch of its own: as one with the next, each of its instructions became a conditional one.
