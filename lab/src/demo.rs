@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
-use palpate::Method;
-use palpate_drive::replay_format::estimate_words;
+use palpate::EstimatorBank;
+use palpate_drive::replay_format::{UpdateResult, estimate_words};
 
 use crate::diagnose::{self, DiagnoseArgs};
 use crate::effects;
 use crate::qemu_bench::{QemuBench, project};
 use crate::recording::Recording;
 use crate::recordings_folder;
-use crate::replay::{Options, Outputs, Place, Replayed, Runner, replay};
+use crate::replay::{Options, Outputs, Place, Plan, Replayed, Runner, replay};
 use crate::rig::{Rig, Sensors};
 use crate::simulate::{self, SimulateArgs};
 use crate::tools::{Leave, MissingTools};
@@ -130,17 +130,21 @@ fn explained(rig: &Path, trials: &[PathBuf], out: &Path) -> Result<PathBuf> {
 fn show(device: Option<&Runner>, rig_path: &Path, trial: &Path, out: &Path) -> Result<PathBuf> {
     let rig = Rig::read(rig_path)?;
     let options = Options::default();
-    let outputs = Outputs::open(out, rig_path, &[trial.to_path_buf()])?;
-    let run = |runner| replay(runner, &rig, rig_path, Recording::read(trial, &rig)?, &options);
-    let host = run(&Runner::Host)?;
-    let device = device.map(run).transpose()?;
-    print_side_by_side(&rig, &host, device.as_ref())?;
-    host.notices().iter().for_each(|notice| println!("   note: {notice}"));
+    let mut outputs = Outputs::open(out, rig_path, &[trial.to_path_buf()])?;
+    let recording = Recording::read(trial, &rig)?;
+    let plan = Plan::new(&rig, rig_path, &recording, &options)?;
+    let host = replay(&Runner::Host, &plan, &recording, outputs.sinks(rig.coordinate).pop())?;
+    let verdict = match device {
+        None => "left out".to_owned(),
+        Some(device) => same_bits(device, &plan, &recording)?,
+    };
+    print_side_by_side(&rig, &host, &verdict);
+    host.notices.iter().for_each(|notice| println!("   note: {notice}"));
     outputs.write(&rig, vec![host], &options, Place::Host)?;
     Ok(out.join("replay.html"))
 }
 
-fn print_side_by_side(rig: &Rig, host: &Replayed, device: Option<&Replayed>) -> Result<()> {
+fn print_side_by_side(rig: &Rig, host: &Replayed, verdict: &str) {
     let (k, b) = (rig.coordinate.stiffness_unit(), rig.coordinate.damping_unit());
     println!(
         "   {:<9} {:>26} {:>26}   device",
@@ -148,11 +152,7 @@ fn print_side_by_side(rig: &Rig, host: &Replayed, device: Option<&Replayed>) -> 
         format!("K on the host [{k}]"),
         format!("B on the host [{b}]")
     );
-    for (at, (method, summary)) in host.trace.summaries(&host.plan.samples).into_iter().enumerate() {
-        let verdict = match device {
-            None => "left out".to_owned(),
-            Some(device) => same_bits(host, device, at)?,
-        };
+    for (method, summary) in &host.summaries {
         let (k, b) = summary.map_or(("unknown".to_owned(), "unknown".to_owned()), |s| {
             (
                 crate::replay::interval(s.stiffness, s.stiffness_half_width),
@@ -161,25 +161,25 @@ fn print_side_by_side(rig: &Rig, host: &Replayed, device: Option<&Replayed>) -> 
         });
         println!("   {:<9} {k:>26} {b:>26}   {verdict}", method.name());
     }
-    Ok(())
 }
 
-/// How many samples agree to the bit; an error where one does not.
-fn same_bits(host: &Replayed, device: &Replayed, at: usize) -> Result<String> {
-    let pick = |replayed: &Replayed| replayed.trace.columns().get(at).cloned().context("a method did not run");
-    let ((method, host), (_, device)): ((Method, _), _) = (pick(host)?, pick(device)?);
-    ensure!(
-        host.len() == device.len(),
-        "{}: the device returned {} of {} samples",
-        method.name(),
-        device.len(),
-        host.len()
-    );
-    let differing = host.iter().zip(&device).position(|(a, b)| estimate_words(a) != estimate_words(b));
-    match differing {
-        Some(k) => {
-            anyhow::bail!("{}: host and device differ at sample {k}: {:?}, {:?}", method.name(), host[k], device[k])
-        }
-        None => Ok(format!("same bits on {} of {} samples", device.len(), host.len())),
-    }
+/// How many samples agree to the bit, in all methods; an error where one does not.
+fn same_bits(device: &Runner, plan: &Plan, recording: &Recording) -> Result<String> {
+    let mut host = EstimatorBank::new(&plan.config)?;
+    let mut samples = plan.samples(recording).enumerate();
+    let words = |outcome: &UpdateResult| {
+        let estimates = outcome.as_ref().map(|all| plan.methods.iter().map(|method| all[*method as usize]));
+        estimates
+            .map(|estimates| estimates.map(|estimate| estimate_words(&estimate)).collect::<Vec<_>>())
+            .map_err(|r| *r)
+    };
+    device.start(plan, recording, |_| ())?.outcomes(|device| {
+        let (k, sample) = samples.next().context("the device returned more samples than it was fed")?;
+        let host = host.update(sample);
+        ensure!(words(&host) == words(&device), "host and device differ at sample {k}: {host:?}, {device:?}");
+        Ok(())
+    })?;
+    let count = plan.samples(recording).len();
+    ensure!(samples.len() == 0, "the device returned {} of {count} samples", count - samples.len());
+    Ok(format!("same bits on {count} of {count} samples"))
 }

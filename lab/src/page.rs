@@ -2,7 +2,9 @@
 
 mod answer;
 pub(crate) mod column;
+mod contact;
 mod document;
+mod drawing;
 pub(crate) mod effect_name;
 mod embed;
 pub(crate) mod neighbour;
@@ -12,6 +14,9 @@ pub(crate) mod table;
 pub(crate) mod thin;
 
 use std::io::{self, Write};
+
+pub use contact::ContactSpan;
+pub use drawing::{Drawing, Drawn, Row, budget};
 
 /// Everything that the page shows. Pure data: nothing here knows how it was computed.
 #[derive(Debug, Clone)]
@@ -28,7 +33,7 @@ pub struct Page {
     pub trials: Vec<Trial>,
 }
 
-/// One recording and what the estimators made of it. All vectors are of equal length.
+/// One recording and what the estimators made of it.
 #[derive(Debug, Clone)]
 pub struct Trial {
     /// File name without its folder.
@@ -39,16 +44,10 @@ pub struct Trial {
     pub nominal_stiffness: f64,
     /// Nominal damping of the rig file.
     pub nominal_damping: f64,
-    /// Seconds.
-    pub time: Vec<f64>,
-    /// Depth below the rig's surface, positive into the environment.
-    pub penetration: Vec<f32>,
-    /// Measured contact force, positive when the tool pushes.
-    pub force: Vec<f32>,
-    /// The contact detection.
-    pub contact: Vec<bool>,
     /// One entry a method.
     pub methods: Vec<Method>,
+    /// The rows that are drawn, with the estimates of each method.
+    pub drawn: Drawn,
     /// What a reader must know of this replay ("cut-off lowered to 2 Hz: the recording has 10 samples a second").
     pub notices: Vec<String>,
 }
@@ -66,13 +65,23 @@ pub struct Units {
     pub damping: &'static str,
 }
 
-/// One estimator's trace.
+/// One estimator.
 #[derive(Debug, Clone)]
 pub struct Method {
     /// Short name as on the command line: "bls".
     pub name: &'static str,
     /// Long name: "block least squares".
     pub title: &'static str,
+    /// Summary over the samples in contact whose interval is finite, `None` where there are none.
+    pub summary: Option<Summary>,
+}
+
+/// Numbers that an estimator gives for each row.
+pub const ESTIMATE_COLUMNS: usize = 5;
+
+/// One estimator's trace.
+#[derive(Debug, Clone, Default)]
+pub struct Estimates {
     /// K.
     pub stiffness: Vec<f32>,
     /// Half-width of the 95 % interval of K; infinite where nothing is known yet.
@@ -83,8 +92,6 @@ pub struct Method {
     pub damping_half_width: Vec<f32>,
     /// Force minus what the estimate before this sample predicted.
     pub innovation: Vec<f32>,
-    /// Summary over the samples in contact whose interval is finite, `None` where there are none.
-    pub summary: Option<Summary>,
 }
 
 /// The figures of one method over one trial.
@@ -104,7 +111,7 @@ pub struct Summary {
 
 impl Page {
     /// Writes the page. It needs nothing but itself: style, scripts and data are inside, and it forbids the browser
-    /// to fetch anything. A long trial is thinned to the rows that a screen can resolve.
+    /// to fetch anything.
     ///
     /// # Errors
     /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] where the vectors of a trial differ in length.
@@ -112,36 +119,27 @@ impl Page {
         for trial in &self.trials {
             trial.check()?;
         }
-        let budget = thin::budget(self.trials.iter().map(|trial| 5 + 5 * trial.methods.len()).sum());
-        let shown: Vec<Vec<usize>> = self.trials.iter().map(|trial| trial.shown(budget)).collect();
         document::open(self, out)?;
-        for (index, (trial, rows)) in self.trials.iter().zip(&shown).enumerate() {
-            let section = document::trial(self, index, trial, rows.len());
-            out.write_all(section.into_string().as_bytes())?;
+        for (index, trial) in self.trials.iter().enumerate() {
+            out.write_all(document::trial(self, index, trial).into_string().as_bytes())?;
         }
-        embed::data(self, &shown, out)?;
+        embed::data(self, out)?;
         document::close(out)
     }
 }
 
 impl Trial {
     fn check(&self) -> io::Result<()> {
-        let rows = self.time.len();
-        let common = [self.penetration.len(), self.force.len(), self.contact.len()];
-        let of_methods = self.methods.iter().flat_map(|method| method.columns().map(<[f32]>::len));
-        if common.into_iter().chain(of_methods).all(|len| len == rows) {
+        let drawn = &self.drawn;
+        let rows = drawn.time.len();
+        let common = [drawn.penetration.len(), drawn.force.len(), drawn.contact.len()];
+        let of_methods = drawn.estimates.iter().flat_map(|estimates| estimates.columns().map(<[f32]>::len));
+        let is_complete = drawn.estimates.len() == self.methods.len();
+        if is_complete && common.into_iter().chain(of_methods).all(|len| len == rows) {
             return Ok(());
         }
         let message = format!("{}: the columns of a trial must all have the {rows} rows of its time", self.name);
         Err(io::Error::new(io::ErrorKind::InvalidInput, message))
-    }
-
-    /// At most `budget` rows that look like all of them.
-    fn shown(&self, budget: usize) -> Vec<usize> {
-        let edges = thin::edges(&self.contact, budget / 2);
-        let innovations = self.methods.iter().map(|method| method.innovation.as_slice());
-        let signals: Vec<&[f32]> = [self.penetration.as_slice(), &self.force].into_iter().chain(innovations).collect();
-        thin::rows(self.time.len(), &edges, &signals, budget)
     }
 
     /// The method that predicted the force best: the one that the page quotes.
@@ -151,10 +149,17 @@ impl Trial {
     }
 }
 
-impl Method {
+impl Estimates {
     /// In the order in which the page's script expects them.
-    fn columns(&self) -> [&[f32]; 5] {
+    fn columns(&self) -> [&[f32]; ESTIMATE_COLUMNS] {
         [&self.stiffness, &self.stiffness_half_width, &self.damping, &self.damping_half_width, &self.innovation]
+    }
+
+    /// The numbers of one row more, in the order of the fields.
+    fn push(&mut self, row: [f32; ESTIMATE_COLUMNS]) {
+        let Self { stiffness, stiffness_half_width, damping, damping_half_width, innovation } = self;
+        let columns = [stiffness, stiffness_half_width, damping, damping_half_width, innovation];
+        columns.into_iter().zip(row).for_each(|(column, value)| column.push(value));
     }
 }
 

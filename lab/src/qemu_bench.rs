@@ -7,11 +7,12 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
-use palpate::{EstimatorBankConfig, Sample};
+use palpate::{EstimatorBankConfig, Methods, Sample};
 use palpate_drive::replay_format::{
     CONFIG_BYTES, COUNTER_BYTES, ReplayCounters, UpdateResult, decode_counters, decode_record, encode_config,
     encode_sample, record_bytes,
 };
+use tempfile::TempDir;
 
 use crate::interrupt::{Process, Temporary};
 use crate::tools::{self, Leave};
@@ -34,35 +35,26 @@ impl QemuBench {
         Ok(Self { qemu: tools::for_the_device(leave)?, image: build("palpate-firmware", "--bin", "replay")? })
     }
 
-    /// Feeds `samples` to the image and hands each outcome to `take`, in order; `progress` is called meanwhile with how many are
-    /// done. The time is the emulator's own: it sleeps through what the core sleeps.
+    /// Feeds `samples` to the image; `progress` is called meanwhile with how many are done. The time is the emulator's own: it
+    /// sleeps through what the core sleeps.
     ///
     /// # Errors
-    /// The image or the emulator fails, or returns something else than one record a sample.
-    pub fn run(
+    /// The image or the emulator fails.
+    pub fn start(
         &self,
         config: &EstimatorBankConfig,
-        samples: &[Sample],
+        samples: impl ExactSizeIterator<Item = Sample>,
         progress: impl Fn(u64),
-        mut take: impl FnMut(UpdateResult),
-    ) -> Result<ReplayCounters> {
+    ) -> Result<QemuRun> {
         let folder = tempfile::tempdir().context("cannot make a folder for the image's files")?;
-        let _removed_by_a_signal = Temporary::new(folder.path());
+        let removed_by_a_signal = Temporary::new(folder.path());
+        let count = samples.len();
         write_input(&folder.path().join("replay.in"), config, samples).context("cannot write the image's input")?;
-        let output = folder.path().join("replay.out");
+        let run =
+            QemuRun { folder, _removed_by_a_signal: removed_by_a_signal, methods: config.methods, samples: count };
         let size = record_bytes(config.methods);
-        self.emulate(folder.path(), &output, |written| progress(written / size as u64))?;
-        let mut records = BufReader::new(File::open(&output).context("the image wrote no output")?);
-        let mut bytes = vec![0; size];
-        for k in 0..samples.len() {
-            records.read_exact(&mut bytes).with_context(|| format!("the image's output ends at sample {k}"))?;
-            let outcome = decode_record(&bytes, config.methods);
-            take(outcome.with_context(|| format!("the image's record of sample {k} is none"))?);
-        }
-        let mut counters = [0; COUNTER_BYTES];
-        records.read_exact(&mut counters).context("the image's output lacks its counters")?;
-        ensure!(records.read(&mut [0])? == 0, "the image's output goes on after its counters");
-        decode_counters(&counters).context("the image's counters are none")
+        self.emulate(run.folder.path(), &run.output(), |written| progress(written / size as u64))?;
+        Ok(run)
     }
 
     fn emulate(&self, folder: &Path, output: &Path, grown: impl Fn(u64)) -> Result<()> {
@@ -93,6 +85,40 @@ impl QemuBench {
     }
 }
 
+/// What the image returned, in its file, which is there as long as this is.
+#[derive(Debug)]
+pub struct QemuRun {
+    // Dropped, and with it removed, before it is forgotten that a signal has to remove it.
+    folder: TempDir,
+    _removed_by_a_signal: Temporary,
+    methods: Methods,
+    samples: usize,
+}
+
+impl QemuRun {
+    fn output(&self) -> PathBuf {
+        self.folder.path().join("replay.out")
+    }
+
+    /// Hands the outcome of each sample to `take`, in order.
+    ///
+    /// # Errors
+    /// The image returned something else than one record a sample, or `take` returns one.
+    pub fn each(&self, mut take: impl FnMut(UpdateResult) -> Result<()>) -> Result<ReplayCounters> {
+        let mut records = BufReader::new(File::open(self.output()).context("the image wrote no output")?);
+        let mut bytes = vec![0; record_bytes(self.methods)];
+        for k in 0..self.samples {
+            records.read_exact(&mut bytes).with_context(|| format!("the image's output ends at sample {k}"))?;
+            let outcome = decode_record(&bytes, self.methods);
+            take(outcome.with_context(|| format!("the image's record of sample {k} is none"))?)?;
+        }
+        let mut counters = [0; COUNTER_BYTES];
+        records.read_exact(&mut counters).context("the image's output lacks its counters")?;
+        ensure!(records.read(&mut [0])? == 0, "the image's output goes on after its counters");
+        decode_counters(&counters).context("the image's counters are none")
+    }
+}
+
 /// Waits for the emulator as long as its output grows; `grown` is called with its size.
 fn wait(child: &mut Child, output: &Path, grown: impl Fn(u64)) -> Result<()> {
     let (mut size, mut since) = (0, Instant::now());
@@ -110,12 +136,12 @@ fn wait(child: &mut Child, output: &Path, grown: impl Fn(u64)) -> Result<()> {
     Ok(())
 }
 
-fn write_input(path: &Path, config: &EstimatorBankConfig, samples: &[Sample]) -> Result<()> {
+fn write_input(path: &Path, config: &EstimatorBankConfig, samples: impl Iterator<Item = Sample>) -> Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
     let mut buffer = [0; CONFIG_BYTES + 4];
     file.write_all(encode_config(config, &mut buffer).context("the settings do not fit their buffer")?)?;
     for sample in samples {
-        file.write_all(&encode_sample(sample))?;
+        file.write_all(&encode_sample(&sample))?;
     }
     Ok(file.flush()?)
 }

@@ -1,31 +1,34 @@
 //! `palpate replay`: recordings through the estimators, on the host or on the device.
 
 mod estimates;
+mod median;
 mod options;
 mod outputs;
 mod plan;
+mod run;
 mod table;
-mod trace;
+mod tally;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use palpate::{EstimatorBank, EstimatorBankConfig, Sample};
-use palpate_drive::replay_format::UpdateResult;
+use palpate::Method;
 
 use crate::error::InputError;
-use crate::qemu_bench::QemuBench;
+use crate::outfile::OutFile;
+use crate::page::{self, Drawing, Drawn, Row, Summary};
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::terminal::printable;
-use crate::tools::Leave;
+use estimates::EstimatesFile;
 pub use options::{LossChoice, Options, VelocityChoice};
-pub use outputs::{Outputs, REPLAY_PAGE};
+pub use outputs::{Outputs, REPLAY_PAGE, Sink};
 pub use plan::Plan;
+pub use run::{Run, Runner, Step};
 pub use table::interval;
-pub use trace::Trace;
+pub use tally::Tally;
 
 /// Arguments of `palpate replay`.
 #[derive(Debug, Clone, Args)]
@@ -57,22 +60,24 @@ pub enum Place {
     Qemu,
 }
 
-/// A trial with what the estimators made of it.
+/// What the estimators made of a trial.
 pub struct Replayed {
-    /// Name and time of what was measured; depth and force as they were fed are in the plan.
-    pub recording: Recording,
-    /// How it was fed to the estimators.
-    pub plan: Plan,
-    /// What they returned.
-    pub trace: Trace,
+    /// The trial's name.
+    pub name: String,
+    /// What a reader should know, of the settings first and then of the run.
+    pub notices: Vec<String>,
+    /// The figures of each method, in the order asked for; `None` where no interval was finite in contact.
+    pub summaries: Vec<(Method, Option<Summary>)>,
+    /// What it leaves behind, where it was asked to.
+    pub written: Option<Written>,
 }
 
-impl Replayed {
-    /// What a reader should know, of the settings first and then of the run.
-    #[must_use]
-    pub fn notices(&self) -> Vec<String> {
-        self.plan.notices.iter().cloned().chain(self.trace.notices(&self.plan)).collect()
-    }
+/// What a replay leaves behind.
+pub struct Written {
+    /// `estimates.csv`, whole and not yet in its place.
+    pub file: OutFile,
+    /// What the page draws.
+    pub drawn: Drawn,
 }
 
 /// Runs the command.
@@ -81,18 +86,18 @@ impl Replayed {
 /// A file or the command line is at fault, or the device fails.
 pub fn run(args: &ReplayArgs) -> Result<()> {
     let rig = Rig::read(&args.rig)?;
-    let outputs = args.out.as_deref().map(|folder| Outputs::open(folder, &args.rig, &args.trials)).transpose()?;
+    let mut outputs = args.out.as_deref().map(|folder| Outputs::open(folder, &args.rig, &args.trials)).transpose()?;
     let recordings = args.trials.iter().map(|path| Recording::read(path, &rig));
     let recordings = recordings.collect::<Result<Vec<_>, InputError>>()?;
     let runner = Runner::prepare(args.on)?;
+    let mut sinks = outputs.as_mut().map(|outputs| outputs.sinks(rig.coordinate)).unwrap_or_default().into_iter();
     let mut replayed = Vec::with_capacity(recordings.len());
     for recording in recordings {
-        replayed.push(replay(&runner, &rig, &args.rig, recording, &args.options)?);
+        let plan = Plan::new(&rig, &args.rig, &recording, &args.options)?;
+        replayed.push(replay(&runner, &plan, &recording, sinks.next())?);
     }
     for one in &replayed {
-        one.notices()
-            .iter()
-            .for_each(|notice| eprintln!("{}", printable(&format!("{}: {notice}", one.recording.name))));
+        one.notices.iter().for_each(|notice| eprintln!("{}", printable(&format!("{}: {notice}", one.name))));
     }
     table::print(&rig, &replayed)?;
     if let Some(outputs) = outputs {
@@ -103,74 +108,63 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     Ok(())
 }
 
-/// One recording through the estimators.
+/// One recording through the estimators, as `plan` says; where there is a `sink`, its `estimates.csv` is written meanwhile.
 ///
 /// # Errors
-/// The rig or the recording lacks what the estimators need, a setting is out of range, or the device fails.
-pub fn replay(
-    runner: &Runner,
-    rig: &Rig,
-    rig_path: &Path,
-    recording: Recording,
-    options: &Options,
-) -> Result<Replayed> {
-    let plan = Plan::new(rig, rig_path, &recording, options)?;
-    let mut trace = Trace::new(&plan.methods, plan.samples.len());
-    let bar = progress(&recording.name, plan.samples.len());
-    runner.run(&plan.config, &plan.samples, |done| bar.set_position(done), |outcome| trace.take(outcome))?;
+/// The device fails, or the file cannot be written any more.
+pub fn replay(runner: &Runner, plan: &Plan, recording: &Recording, sink: Option<Sink>) -> Result<Replayed> {
+    let rows = plan.samples(recording).len();
+    let bar = progress(&recording.name, rows);
+    let progress = |done| bar.set_position(done);
+    let run = runner.start(plan, recording, progress)?;
+    let drawing = sink.as_ref().map(|sink| Drawing::new(rows, plan.methods.len(), sink.page_rows(plan)));
+    let mut watch = Watch { tally: Tally::new(&plan.methods), drawing, drawn: Vec::new() };
+    let mut file = sink.map(|sink| EstimatesFile::begin(sink.file, sink.coordinate, &plan.methods)).transpose()?;
+    run.pass(progress, |step| {
+        watch.take(step);
+        Ok(file.as_mut().map_or(Ok(()), |file| file.take(step))?)
+    })?;
+    let file = file.map(EstimatesFile::finish).transpose()?;
+    while !watch.end_of_pass() {
+        run.pass(progress, |step| {
+            watch.take(step);
+            Ok(())
+        })?;
+    }
     bar.finish_and_clear();
-    // Depth and force are in the plan; the other columns of a long recording would only take room.
-    let recording = Recording { name: recording.name, time: recording.time, ..Recording::default() };
-    Ok(Replayed { recording, plan, trace })
+    let on_force = plan.config.stream.front_end.contact_detector.on_force;
+    Ok(Replayed {
+        name: recording.name.clone(),
+        notices: plan.notices.iter().cloned().chain(watch.tally.notices(on_force)).collect(),
+        summaries: watch.tally.summaries(),
+        written: file.zip(watch.drawing).map(|(file, drawing)| Written { file, drawn: drawing.finish() }),
+    })
 }
 
-/// Runs a bench at its place.
-pub enum Runner {
-    /// Here.
-    Host,
-    /// Under QEMU.
-    QemuBench(QemuBench),
+/// What is had of the rows while they pass by, in as many passes as it takes.
+struct Watch {
+    tally: Tally,
+    drawing: Option<Drawing>,
+    /// Of one row.
+    drawn: Vec<[f32; page::ESTIMATE_COLUMNS]>,
 }
 
-impl Runner {
-    /// Samples between two words of progress.
-    const BLOCK: usize = 4096;
-
-    /// Sets up what the place needs.
-    ///
-    /// # Errors
-    /// A tool is missing or the image does not build.
-    pub fn prepare(place: Place) -> Result<Self> {
-        Ok(match place {
-            Place::Host => Self::Host,
-            Place::Qemu => Self::QemuBench(QemuBench::prepare(Leave::Install)?),
-        })
+impl Watch {
+    fn take(&mut self, step: &Step<'_>) {
+        self.tally.take(step);
+        if let Some(drawing) = &mut self.drawing {
+            self.drawn.clear();
+            self.drawn.extend(step.estimates.iter().map(run::drawn));
+            let (penetration, force) = (step.sample.position, step.sample.force);
+            let contact = step.contact();
+            drawing.take(Row { time: step.time, penetration, force, contact, estimates: &self.drawn });
+        }
     }
 
-    /// Hands the outcome of each sample to `take`, in order; `progress` receives from time to time how many are done.
-    ///
-    /// # Errors
-    /// The settings are out of range, or the device fails.
-    pub fn run(
-        &self,
-        config: &EstimatorBankConfig,
-        samples: &[Sample],
-        progress: impl Fn(u64),
-        mut take: impl FnMut(UpdateResult),
-    ) -> Result<()> {
-        match self {
-            Self::Host => {
-                let mut bench = EstimatorBank::new(config)?;
-                for (done, block) in samples.chunks(Self::BLOCK).enumerate() {
-                    progress((done * Self::BLOCK) as u64);
-                    block.iter().for_each(|&sample| take(bench.update(sample)));
-                }
-            }
-            Self::QemuBench(device) => {
-                device.run(config, samples, progress, take)?;
-            }
-        }
-        Ok(())
+    /// Whether all is had.
+    fn end_of_pass(&mut self) -> bool {
+        let is_drawn = self.drawing.as_mut().is_none_or(Drawing::end_of_pass);
+        self.tally.end_of_pass() && is_drawn
     }
 }
 

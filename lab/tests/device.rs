@@ -44,17 +44,15 @@ fn compare(
     let mut bench = EstimatorBank::new(config).expect("sound settings");
     let host: Vec<UpdateResult> = samples.iter().map(|&sample| bench.update(sample)).collect();
     let mut returned = 0;
-    let counters = device
-        .run(
-            config,
-            samples,
-            |_| (),
-            |outcome| {
-                assert_same(what, returned, &host[returned], &outcome);
-                returned += 1;
-            },
-        )
-        .unwrap_or_else(|error| panic!("{what}: {error:#}"));
+    let run = device.start(config, samples.iter().copied(), |_| ());
+    let counters = run.and_then(|run| {
+        run.each(|outcome| {
+            assert_same(what, returned, &host[returned], &outcome);
+            returned += 1;
+            Ok(())
+        })
+    });
+    let counters = counters.unwrap_or_else(|error| panic!("{what}: {error:#}"));
     assert_eq!(returned, samples.len(), "{what}");
     assert_eq!(counters.samples as usize, samples.len(), "{what}: the interrupt took every sample once");
     (counters, host)
@@ -83,7 +81,8 @@ fn on_a_simulated_bench_every_estimate_has_the_same_bits() {
     let recording = simulate::simulate(&rig, 7, "bench.toml").expect("a trial").recording;
     let options = Options { methods: Method::ALL.to_vec(), ..Options::default() };
     let plan = Plan::new(&rig, &rig_path, &recording, &options).expect("a plan");
-    let (counters, host) = compare(&device, "bench", &plan.config, &plan.samples);
+    let samples: Vec<Sample> = plan.samples(&recording).collect();
+    let (counters, host) = compare(&device, "bench", &plan.config, &samples);
     assert_eq!(counters.overruns, 0, "every update ends within its millisecond");
     let touched = host.iter().flatten().filter(|all| all[Method::Bls as usize].impedance.stiffness > 100.0).count();
     assert!(touched > 20_000, "the bench touches for half of its 60 s, found {touched} samples");
@@ -126,8 +125,9 @@ fn compare_trial(device: &QemuBench, path: &Path) -> usize {
     let options = Options { methods: Method::ALL.to_vec(), window: 120, ..Options::default() };
     let plan =
         Plan::new(&rig, path, &recording, &options).unwrap_or_else(|error| panic!("{}: {error:#}", recording.name));
-    compare(device, &recording.name, &plan.config, &plan.samples);
-    plan.samples.len()
+    let samples: Vec<Sample> = plan.samples(&recording).collect();
+    compare(device, &recording.name, &plan.config, &samples);
+    samples.len()
 }
 
 #[test]
@@ -212,6 +212,6 @@ fn settings_out_of_range_are_refused_by_the_image_and_told() {
     let Some(device) = device() else { return };
     let config =
         EstimatorBankConfig { block: BlockConfig::of(5000), ..EstimatorBankConfig::all_methods(StreamConfig::BENCH) };
-    let error = device.run(&config, &[], |_| (), |_| ()).expect_err("a window of 5000 samples");
+    let error = device.start(&config, [].into_iter(), |_| ()).expect_err("a window of 5000 samples");
     assert!(format!("{error:#}").contains("the settings are out of range"), "{error:#}");
 }

@@ -8,10 +8,10 @@ mod reading;
 mod synthetic;
 
 use full::Full;
-use palpate_lab::page::{Page, Trial};
+use palpate_lab::page::Page;
 use reading::{bytes, doubles, floats, prose};
 use std::io::ErrorKind;
-use synthetic::{AFM, BENCH, Touching, odd, page, touching};
+use synthetic::{AFM, BENCH, Recorded, Touching, odd, page, touching};
 
 fn written(page: &Page) -> String {
     let mut out = Vec::new();
@@ -23,7 +23,7 @@ fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-fn says(trial: Trial, sentence: &str) {
+fn says(trial: Recorded, sentence: &str) {
     let prose = prose(&written(&page("bench A", vec![trial])));
     assert!(prose.contains(sentence), "{sentence:?} is not in {prose:?}");
 }
@@ -152,8 +152,8 @@ fn hostile_names_stay_text() {
 fn the_numbers_of_a_short_trial_come_back_to_the_bit() {
     let mut trial = touching().trial("trial-1.csv");
     trial.time.iter_mut().for_each(|time| *time += 1.7e9);
-    trial.methods[1].stiffness[700] = f32::NAN;
-    trial.methods[1].stiffness_half_width[701] = f32::INFINITY;
+    trial.methods[1].estimates.stiffness[700] = f32::NAN;
+    trial.methods[1].estimates.stiffness_half_width[701] = f32::INFINITY;
     let html = written(&page("bench A", vec![trial.clone()]));
     assert!(prose(&html).contains("Samples shown: all 3\u{202f}000."));
     assert_eq!(doubles(&html, "t0-time"), trial.time);
@@ -162,11 +162,11 @@ fn the_numbers_of_a_short_trial_come_back_to_the_bit() {
     assert_eq!(bits(&floats(&html, "t0-force")), bits(&trial.force));
     for (n, method) in trial.methods.iter().enumerate() {
         let column = |name: &str| bits(&floats(&html, &format!("t0-m{n}-{name}")));
-        assert_eq!(column("stiffness"), bits(&method.stiffness));
-        assert_eq!(column("stiffness-half-width"), bits(&method.stiffness_half_width));
-        assert_eq!(column("damping"), bits(&method.damping));
-        assert_eq!(column("damping-half-width"), bits(&method.damping_half_width));
-        assert_eq!(column("innovation"), bits(&method.innovation));
+        assert_eq!(column("stiffness"), bits(&method.estimates.stiffness));
+        assert_eq!(column("stiffness-half-width"), bits(&method.estimates.stiffness_half_width));
+        assert_eq!(column("damping"), bits(&method.estimates.damping));
+        assert_eq!(column("damping-half-width"), bits(&method.estimates.damping_half_width));
+        assert_eq!(column("innovation"), bits(&method.estimates.innovation));
     }
 }
 
@@ -194,8 +194,8 @@ fn a_million_samples_are_thinned_and_keep_what_matters() {
     // One sample each, somewhere in the middle of things.
     trial.force[123_457] = 99.0;
     trial.penetration[234_567] = -0.5;
-    trial.methods[6].innovation[345_678] = -42.0;
-    trial.methods[8].innovation[345_679] = 41.0;
+    trial.methods[6].estimates.innovation[345_678] = -42.0;
+    trial.methods[8].estimates.innovation[345_679] = 41.0;
     trial.notices.push("a notice".into());
     let html = written(&page("bench A", vec![trial.clone()]));
     println!("{} bytes", html.len());
@@ -234,10 +234,10 @@ fn twenty_long_recordings_share_the_weight() {
 
 #[test]
 fn columns_of_unequal_length_are_refused() {
-    let mut trial = touching().trial("torn.csv");
-    trial.methods[2].damping.pop();
+    let mut torn = page("bench A", vec![touching().trial("torn.csv")]);
+    torn.trials[0].drawn.estimates[2].damping.pop();
     let mut out = Vec::new();
-    let error = page("bench A", vec![trial]).write(&mut out).expect_err("a column is short");
+    let error = torn.write(&mut out).expect_err("a column is short");
     assert_eq!(error.kind(), ErrorKind::InvalidInput);
     assert!(error.to_string().contains("torn.csv"));
     assert!(out.is_empty());

@@ -1,57 +1,18 @@
 //! The answer in plain words, of one recording and of many.
 
 use super::quantity::{percent, plain, rounded, seconds, with_interval};
-use super::{Method, Page, Summary, Trial};
+use super::{ContactSpan, Method, Page, Summary, Trial};
 use maud::{Markup, html};
-
-/// Time in contact and the number of touches.
-struct Contact {
-    seconds: f64,
-    touches: usize,
-}
-
-impl Contact {
-    fn of(trial: &Trial) -> Self {
-        let steps = trial.time.windows(2).zip(&trial.contact);
-        let seconds = steps.filter(|(_, contact)| **contact).map(|(step, _)| step[1] - step[0]).sum();
-        Self { seconds, touches: touches_of(trial) }
-    }
-}
-
-/// Break between two stretches of contact, over the longer of them, below which the tool bounced and they are one touch.
-const MAX_BOUNCE_GAP_RATIO: f64 = 0.1;
-
-/// Touches as a person counts them: the bounces of one are no touches of their own.
-fn touches_of(trial: &Trial) -> usize {
-    let mut stretches: Vec<[f64; 2]> = Vec::new();
-    for (row, time) in trial.time.iter().enumerate().filter(|(row, _)| trial.contact.get(*row) == Some(&true)) {
-        match stretches.last_mut() {
-            Some(last) if row > 0 && trial.contact[row - 1] => last[1] = *time,
-            _ => stretches.push([*time, *time]),
-        }
-    }
-    let length = |[start, end]: [f64; 2]| end - start;
-    let mut touches: Vec<[f64; 2]> = Vec::new();
-    for stretch in stretches {
-        match touches.last_mut() {
-            Some(last) if stretch[0] - last[1] < MAX_BOUNCE_GAP_RATIO * length(*last).max(length(stretch)) => {
-                last[1] = stretch[1]
-            }
-            _ => touches.push(stretch),
-        }
-    }
-    touches.len()
-}
 
 /// What one recording says.
 pub(super) fn of_trial(trial: &Trial) -> Markup {
-    let contact = Contact::of(trial);
-    if trial.time.is_empty() {
+    let contact = trial.drawn.span;
+    if trial.drawn.samples == 0 {
         return html! { "The recording is empty: there is nothing to identify." };
     }
     if contact.touches == 0 {
         return html! {
-            "The tool touched nothing in the " (duration(trial)) " of this recording, so there was no stiffness and no damping to identify."
+            "The tool touched nothing in the " (seconds(contact.duration)) " of this recording, so there was no stiffness and no damping to identify."
         };
     }
     let lasted = html! { (seconds(contact.seconds)) " in contact (" (touches(contact.touches)) ")" };
@@ -81,7 +42,7 @@ fn found(trial: &Trial, method: &Method, summary: Summary, lasted: &Markup) -> M
         strong { (with_interval(summary.damping, summary.damping_half_width, units.damping)) }
         (doubt(summary)) ". "
         span.aside {
-            "So says " (method.title) ", " (best) ", over " (lasted) " of a " (duration(trial)) " recording; ± spans 95 %. "
+            "So says " (method.title) ", " (best) ", over " (lasted) " of a " (seconds(trial.drawn.span.duration)) " recording; ± spans 95 %. "
             "The rig file says " (plain(trial.nominal_stiffness, units.stiffness)) " and "
             (plain(trial.nominal_damping, units.damping)) "."
         }
@@ -127,16 +88,9 @@ fn span(values: impl Iterator<Item = f64> + Clone, unit: &str) -> String {
 
 /// Time in contact, as a cell of the table of recordings.
 pub(super) fn time_in_contact(trial: &Trial) -> String {
-    match Contact::of(trial) {
-        Contact { touches: 0, .. } => "none".into(),
-        contact => seconds(contact.seconds),
-    }
-}
-
-fn duration(trial: &Trial) -> String {
-    match (trial.time.first(), trial.time.last()) {
-        (Some(first), Some(last)) => seconds(last - first),
-        _ => seconds(0.0),
+    match trial.drawn.span {
+        ContactSpan { touches: 0, .. } => "none".into(),
+        span => seconds(span.seconds),
     }
 }
 

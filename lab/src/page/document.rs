@@ -55,8 +55,8 @@ fn settings(page: &Page) -> Markup {
     }
 }
 
-/// The section of one recording, of which `shown` rows are drawn.
-pub(super) fn trial(page: &Page, index: usize, trial: &Trial, shown: usize) -> Markup {
+/// The section of one recording.
+pub(super) fn trial(page: &Page, index: usize, trial: &Trial) -> Markup {
     let alone = page.trials.len() == 1;
     html! {
         article.trial #{ "trial-" (index + 1) } data-trial=(index) aria-labelledby={ "name-" (index + 1) } {
@@ -68,7 +68,7 @@ pub(super) fn trial(page: &Page, index: usize, trial: &Trial, shown: usize) -> M
             @if !trial.methods.is_empty() { (table::methods(page, trial)) }
             (notices(trial))
             @if alone { (settings(page)) }
-            @if shown > 0 { (pictures(trial, shown)) }
+            @if !trial.drawn.time.is_empty() { (pictures(trial)) }
         }
     }
 }
@@ -91,8 +91,8 @@ fn notices(trial: &Trial) -> Markup {
     }
 }
 
-fn pictures(trial: &Trial, shown: usize) -> Markup {
-    let total = trial.time.len();
+fn pictures(trial: &Trial) -> Markup {
+    let (total, shown) = (trial.drawn.samples, trial.drawn.time.len());
     html! {
         section.pictures aria-label={ "Pictures of " (trial.name) } {
             noscript { p.notices { "The pictures need JavaScript. All figures above stand without it, and every sample is in estimates.csv." } }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result};
 
-use super::{Options, Place, Replayed, estimates};
+use super::{Options, Place, Plan, Replayed, Written};
 use crate::error::InputError;
 use crate::outfile::OutFile;
 use crate::output_paths;
-use crate::page::{Page, Trial, Units, neighbour};
+use crate::page::{self, Method, Page, Summary, Trial, Units, neighbour};
 use crate::rig::{Coordinate, Rig};
 
 /// The page's name in its folder.
@@ -16,6 +16,24 @@ pub const REPLAY_PAGE: &str = "replay.html";
 
 /// Names that the page of a diagnosis beside it is looked for under.
 const DIAGNOSIS_PAGES: [&str; 3] = ["report.html", "diagnosis.html", "diagnose.html"];
+
+/// What a trial leaves behind while it is replayed.
+pub struct Sink {
+    /// Its `estimates.csv`.
+    pub file: OutFile,
+    /// Names the units in the columns.
+    pub coordinate: Coordinate,
+    /// How many trials share the page.
+    pub trials: usize,
+}
+
+impl Sink {
+    /// Rows that the page draws at most of a trial that is replayed as `plan` says.
+    #[must_use]
+    pub fn page_rows(&self, plan: &Plan) -> usize {
+        page::budget(self.trials, plan.methods.len())
+    }
+}
 
 /// The output files, opened before the work so that a place that cannot be written shows at once.
 pub struct Outputs {
@@ -57,7 +75,15 @@ impl Outputs {
         Ok(Self { estimates, page: OutFile::create(&page)?, folder: folder.to_owned(), paths })
     }
 
-    /// Writes what was replayed, whole or not at all; returns the files.
+    /// Where each trial writes, in their order.
+    #[must_use]
+    pub fn sinks(&mut self, coordinate: Coordinate) -> Vec<Sink> {
+        let files = std::mem::take(&mut self.estimates);
+        let trials = files.len();
+        files.into_iter().map(|file| Sink { file, coordinate, trials }).collect()
+    }
+
+    /// Puts what was replayed in its place, the page last; returns the files.
     ///
     /// # Errors
     /// The place cannot be written any more.
@@ -68,46 +94,39 @@ impl Outputs {
         options: &Options,
         place: Place,
     ) -> Result<Vec<PathBuf>> {
-        for (file, replayed) in self.estimates.into_iter().zip(&replayed) {
-            estimates::write(file, rig.coordinate, replayed)?;
+        let (stiffness, damping) = rig.contact.map_or((f64::NAN, f64::NAN), |c| (c.stiffness, c.damping));
+        let mut trials = Vec::with_capacity(replayed.len());
+        for one in replayed {
+            let Some(Written { file, drawn }) = one.written else { continue };
+            file.commit()?;
+            trials.push(Trial {
+                name: one.name,
+                units: units(rig.coordinate),
+                nominal_stiffness: stiffness,
+                nominal_damping: damping,
+                methods: one.summaries.into_iter().map(method).collect(),
+                drawn,
+                notices: one.notices,
+            });
         }
-        let diagnosis = neighbour::beside(&self.folder.join(REPLAY_PAGE), &DIAGNOSIS_PAGES, "palpate diagnose");
-        let page = Page { diagnosis, ..page(rig, replayed, options, place) };
+        let page = Page {
+            rig: rig.name.clone(),
+            ran_on: match place {
+                Place::Host => "host".to_owned(),
+                Place::Qemu => "Cortex-M4F under QEMU".to_owned(),
+            },
+            settings: options.in_words(),
+            diagnosis: neighbour::beside(&self.folder.join(REPLAY_PAGE), &DIAGNOSIS_PAGES, "palpate diagnose"),
+            trials,
+        };
         page.write(&mut self.page).map_err(|error| self.page.fault(&error))?;
         self.page.commit()?;
         Ok(self.paths)
     }
 }
 
-fn page(rig: &Rig, replayed: Vec<Replayed>, options: &Options, place: Place) -> Page {
-    let (stiffness, damping) = rig.contact.map_or((f64::NAN, f64::NAN), |c| (c.stiffness, c.damping));
-    Page {
-        rig: rig.name.clone(),
-        ran_on: match place {
-            Place::Host => "host".to_owned(),
-            Place::Qemu => "Cortex-M4F under QEMU".to_owned(),
-        },
-        settings: options.in_words(),
-        diagnosis: None,
-        trials: replayed.into_iter().map(|one| trial(one, units(rig.coordinate), stiffness, damping)).collect(),
-    }
-}
-
-fn trial(replayed: Replayed, units: Units, nominal_stiffness: f64, nominal_damping: f64) -> Trial {
-    let (notices, contact) = (replayed.notices(), replayed.trace.contact());
-    let Replayed { recording, plan, trace } = replayed;
-    Trial {
-        name: recording.name,
-        units,
-        nominal_stiffness,
-        nominal_damping,
-        time: recording.time,
-        contact,
-        methods: trace.into_methods(&plan.samples),
-        penetration: plan.samples.iter().map(|sample| sample.position).collect(),
-        force: plan.samples.iter().map(|sample| sample.force).collect(),
-        notices,
-    }
+fn method((method, summary): (palpate::Method, Option<Summary>)) -> Method {
+    Method { name: method.name(), title: method.title(), summary }
 }
 
 fn units(coordinate: Coordinate) -> Units {

@@ -21,10 +21,11 @@ pub struct Plan {
     pub config: EstimatorBankConfig,
     /// The methods that run, in the order asked for.
     pub methods: Vec<Method>,
-    /// Depth below the surface, force above its zero, time since the sample before.
-    pub samples: Vec<Sample>,
     /// What a reader should know.
     pub notices: Vec<String>,
+    surface: f64,
+    force_zero: f64,
+    period: f64,
 }
 
 impl Plan {
@@ -46,11 +47,10 @@ impl Plan {
         let period = recording.period();
         let (cutoff, lowered) = options.cutoff(period)?;
         let zero = rig.sensors.force_zero.unwrap_or(0.0);
-        // The surface and the zero are taken off in double precision: a single keeps seven digits of what is left.
-        let depth: Vec<f64> = recording.position.iter().map(|x| x - contact.surface).collect();
-        let force: Vec<f64> = force.iter().map(|f| f - zero).collect();
         let figures = Figures::of(rig, recording);
-        let units = Units::for_range(range(&depth, &force, period, cutoff, contact.bilateral));
+        let depth = |row: usize| recording.position[row] - contact.surface;
+        let force = force.iter().map(|force| force - zero);
+        let units = Units::for_range(range(depth, force, period, cutoff, contact.bilateral));
         let notices = lowered.into_iter().chain(rescaled(units, rig)).collect();
         let front_end = FrontEndConfig {
             period: period as f32,
@@ -69,8 +69,26 @@ impl Plan {
         Ok(Self {
             config,
             methods: in_order(&options.methods),
-            samples: samples(&depth, &force, &recording.time, period),
             notices,
+            surface: contact.surface,
+            force_zero: zero,
+            period,
+        })
+    }
+
+    /// The samples of the recording that was planned for: depth below the surface, force above its zero, time since the sample before.
+    ///
+    /// The surface and the zero are taken off in double precision: a single keeps seven digits of what is left.
+    pub fn samples<'a>(&'a self, recording: &'a Recording) -> impl ExactSizeIterator<Item = Sample> + 'a {
+        let force = recording.force.as_deref().unwrap_or_default();
+        let time = &recording.time;
+        (0..time.len().min(force.len())).map(move |row| {
+            let before = if row == 0 { time[0] - self.period } else { time[row - 1] };
+            Sample {
+                position: (recording.position[row] - self.surface) as f32,
+                force: (force[row] - self.force_zero) as f32,
+                elapsed: (time[row] - before) as f32,
+            }
         })
     }
 }
@@ -101,16 +119,6 @@ fn in_order(asked: &[Method]) -> Vec<Method> {
     methods
 }
 
-fn samples(depth: &[f64], force: &[f64], time: &[f64], period: f64) -> Vec<Sample> {
-    let before = std::iter::once(time[0] - period).chain(time.iter().copied());
-    depth
-        .iter()
-        .zip(force)
-        .zip(time.iter().zip(before))
-        .map(|((&x, &f), (&t, before))| Sample { position: x as f32, force: f as f32, elapsed: (t - before) as f32 })
-        .collect()
-}
-
 /// Thresholds from what the sensor resolves and how it is noisy: on the paper's bench (0.05 N a count, 0.09 N of noise)
 /// 0.23 N and 0.05 N.
 fn contact_detector(figures: &Figures) -> ContactDetectorConfig {
@@ -124,15 +132,21 @@ fn contact_detector(figures: &Figures) -> ContactDetectorConfig {
 
 /// Full scale of the contact: what all but one in a hundred samples stay below. The rate is a difference over a quarter
 /// of the filter's period, so that the position's rounding does not set it.
-fn range(depth: &[f64], force: &[f64], period: f64, cutoff: f64, bilateral: bool) -> Observation {
-    let inside = |x: f64| if bilateral { x.abs() } else { x.max(0.0) };
-    let lag = ((0.25 / (cutoff * period)) as usize).clamp(1, depth.len().saturating_sub(1).max(1));
-    let rates =
-        depth.iter().zip(depth.iter().skip(lag)).map(|(a, b)| (inside(*b) - inside(*a)).abs() / (lag as f64 * period));
+fn range(
+    depth: impl Fn(usize) -> f64,
+    force: impl ExactSizeIterator<Item = f64>,
+    period: f64,
+    cutoff: f64,
+    bilateral: bool,
+) -> Observation {
+    let rows = force.len();
+    let inside = |row: usize| if bilateral { depth(row).abs() } else { depth(row).max(0.0) };
+    let lag = ((0.25 / (cutoff * period)) as usize).clamp(1, rows.saturating_sub(1).max(1));
+    let rates = (lag..rows).map(|row| (inside(row) - inside(row - lag)).abs() / (lag as f64 * period));
     Observation {
-        penetration: percentile(depth.iter().copied().map(inside)) as f32,
+        penetration: percentile((0..rows).map(inside)) as f32,
         rate: percentile(rates) as f32,
-        force: percentile(force.iter().map(|f| f.abs())) as f32,
+        force: percentile(force.map(f64::abs)) as f32,
     }
 }
 

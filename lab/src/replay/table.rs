@@ -22,8 +22,8 @@ pub fn print(rig: &Rig, replayed: &[Replayed]) -> Result<()> {
         "RMSE %"
     )?;
     for r in replayed {
-        for (method, summary) in r.trace.summaries(&r.plan.samples) {
-            let name = format!("{:<28} {:<12}", printable(&r.recording.name), method.name());
+        for (method, summary) in &r.summaries {
+            let name = format!("{:<28} {:<12}", printable(&r.name), method.name());
             match summary {
                 None => writeln!(out, "{name} never known: no contact, or no movement in it")?,
                 Some(s) => {

@@ -6,7 +6,7 @@ use palpate_drive::link::{Command, EstimateMessage, Source};
 use palpate_drive::replay_format::estimate_words;
 use palpate_drive::{Calibration, Faults, Input, InputStatus, Settings, Validity, as5047p};
 use palpate_lab::listen::Taken;
-use palpate_lab::replay::{Options, Runner, replay};
+use palpate_lab::replay::{Options, Plan, Runner};
 use palpate_lab::rig::Rig;
 
 use super::rig::{Heard, drive, feed, host, image, words};
@@ -108,12 +108,21 @@ fn a_recording_made_through_the_link_replays_to_the_same_estimates() {
     let recording = palpate_lab::recording::Recording::read(&csv, &rig).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(recording.time.len(), fed.len() - 3);
     let options = Options { methods: vec![Settings::default().method], ..Options::default() };
-    let replayed = replay(&Runner::Host, &rig, &toml, recording, &options).unwrap_or_else(|error| panic!("{error:#}"));
-    let columns = replayed.trace.columns();
-    let (_, estimates) = columns.first().expect("a method");
+    let plan = Plan::new(&rig, &toml, &recording, &options).unwrap_or_else(|error| panic!("{error:#}"));
+    let mut estimates = Vec::new();
+    let pass = Runner::Host.start(&plan, &recording, |_| ()).and_then(|run| {
+        run.pass(
+            |_| (),
+            |step| {
+                estimates.extend_from_slice(step.estimates);
+                Ok(())
+            },
+        )
+    });
+    pass.unwrap_or_else(|error| panic!("{error:#}"));
     let live: Vec<_> = heard.told.iter().filter(|told| told.validity == Validity::Live).collect();
     assert_eq!(live.len(), estimates.len());
-    for (k, (told, estimate)) in live.iter().zip(estimates).enumerate() {
+    for (k, (told, estimate)) in live.iter().zip(&estimates).enumerate() {
         let device = estimate_words(&told.estimate());
         assert_eq!(device, estimate_words(estimate), "row {k}: {told:?}, {estimate:?}");
     }

@@ -1,6 +1,6 @@
 //! Recordings and estimates that look like the real ones, without running an estimator.
 
-use palpate_lab::page::{Method, Page, Summary, Trial, Units};
+use palpate_lab::page::{self, Drawing, Drawn, Estimates, Page, Row, Summary, Trial, Units};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -18,6 +18,75 @@ const NAMES: [(&str, &str); 9] = [
     ("gradient", "gradient adaptive law"),
     ("descent", "steepest descent"),
 ];
+
+/// A whole recording and what the estimators made of it. All vectors are of equal length.
+#[derive(Clone)]
+pub struct Recorded {
+    pub name: String,
+    pub nominal_stiffness: f64,
+    pub nominal_damping: f64,
+    pub time: Vec<f64>,
+    pub penetration: Vec<f32>,
+    pub force: Vec<f32>,
+    pub contact: Vec<bool>,
+    pub methods: Vec<Method>,
+    pub notices: Vec<String>,
+}
+
+/// One estimator's trace.
+#[derive(Clone)]
+pub struct Method {
+    pub title: &'static str,
+    pub summary: Option<Summary>,
+    pub estimates: Estimates,
+    name: &'static str,
+}
+
+impl Recorded {
+    /// What a page shows of it, where at most `rows` are drawn.
+    fn trial(self, rows: usize) -> Trial {
+        Trial {
+            drawn: self.drawn(rows),
+            name: self.name,
+            units: LINEAR,
+            nominal_stiffness: self.nominal_stiffness,
+            nominal_damping: self.nominal_damping,
+            methods: self
+                .methods
+                .into_iter()
+                .map(|Method { name, title, summary, .. }| page::Method { name, title, summary })
+                .collect(),
+            notices: self.notices,
+        }
+    }
+
+    fn drawn(&self, rows: usize) -> Drawn {
+        let mut drawing = Drawing::new(self.time.len(), self.methods.len(), rows);
+        loop {
+            for row in 0..self.time.len() {
+                let estimates: Vec<_> = self.methods.iter().map(|method| method.row(row)).collect();
+                drawing.take(Row {
+                    time: self.time[row],
+                    penetration: self.penetration[row],
+                    force: self.force[row],
+                    contact: self.contact[row],
+                    estimates: &estimates,
+                });
+            }
+            if drawing.end_of_pass() {
+                return drawing.finish();
+            }
+        }
+    }
+}
+
+impl Method {
+    fn row(&self, row: usize) -> [f32; page::ESTIMATE_COLUMNS] {
+        let of = &self.estimates;
+        [&of.stiffness, &of.stiffness_half_width, &of.damping, &of.damping_half_width, &of.innovation]
+            .map(|column| column[row])
+    }
+}
 
 /// A tool that presses a wall of `stiffness` and `damping` for half of every `period` seconds.
 #[derive(Clone, Copy)]
@@ -66,13 +135,12 @@ pub const AFM: Touching = Touching {
 };
 
 impl Touching {
-    pub fn trial(&self, name: &str) -> Trial {
+    pub fn trial(&self, name: &str) -> Recorded {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let mut noise = move || -> f64 { StandardNormal.sample(&mut rng) };
         let rows = (self.seconds * self.rate) as usize;
-        let mut trial = Trial {
+        let mut trial = Recorded {
             name: name.into(),
-            units: LINEAR,
             nominal_stiffness: 1.05 * self.stiffness,
             nominal_damping: 0.8 * self.damping,
             time: (0..rows).map(|row| row as f64 / self.rate).collect(),
@@ -104,20 +172,11 @@ impl Touching {
     }
 
     /// An estimator thrown far off at each onset, that then converges and keeps its own kind of noise.
-    fn method(&self, index: usize, trial: &Trial, noise: &mut impl FnMut() -> f64) -> Method {
+    fn method(&self, index: usize, trial: &Recorded, noise: &mut impl FnMut() -> f64) -> Method {
         let (name, title) = NAMES[index % NAMES.len()];
         let settles = [0.15, 0.9, 0.3, 0.2, 0.5, 0.1, 1.2, 1.5, 2.0][index % 9] * self.period / 30.0;
         let jitter = [0.004, 0.006, 0.02, 0.003, 0.01, 0.004, 0.005, 0.01, 0.015][index % 9];
-        let mut method = Method {
-            name,
-            title,
-            stiffness: Vec::new(),
-            stiffness_half_width: Vec::new(),
-            damping: Vec::new(),
-            damping_half_width: Vec::new(),
-            innovation: Vec::new(),
-            summary: None,
-        };
+        let mut method = Method { name, title, summary: None, estimates: Estimates::default() };
         let (mut since, mut slow, mut slow_b, mut sign) = (0.0, 0.0, 0.0, 1.0);
         for (&contact, &penetration) in trial.contact.iter().zip(&trial.penetration) {
             if !contact {
@@ -150,7 +209,7 @@ impl Touching {
     }
 }
 
-pub fn page(rig: &str, trials: Vec<Trial>) -> Page {
+pub fn page(rig: &str, trials: Vec<Recorded>) -> Page {
     let settings = [
         ("window", "300 samples"),
         ("forgetting factor", "0.9967"),
@@ -159,6 +218,9 @@ pub fn page(rig: &str, trials: Vec<Trial>) -> Page {
         ("velocity cut-off", "20 Hz"),
     ];
     let settings = settings.iter().map(|(label, value)| (label.to_string(), value.to_string())).collect();
+    let methods = trials.iter().map(|trial| trial.methods.len()).max().unwrap_or(0);
+    let rows = page::budget(trials.len(), methods);
+    let trials = trials.into_iter().map(|trial| trial.trial(rows)).collect();
     Page { rig: rig.into(), ran_on: "host".into(), settings, diagnosis: Some("report.html".into()), trials }
 }
 
@@ -168,22 +230,22 @@ pub fn touching() -> Touching {
 }
 
 /// Recordings that a picture might stumble over.
-pub fn odd() -> Vec<Trial> {
+pub fn odd() -> Vec<Recorded> {
     let mut vague = touching().trial("no interval is known.csv");
     for method in &mut vague.methods {
         method.summary = None;
-        method.stiffness_half_width.fill(f32::INFINITY);
-        method.damping_half_width.fill(f32::NAN);
+        method.estimates.stiffness_half_width.fill(f32::INFINITY);
+        method.estimates.damping_half_width.fill(f32::NAN);
     }
     let mut astray = touching().trial("one method diverges.csv");
-    astray.methods[2].stiffness.iter_mut().for_each(|stiffness| *stiffness *= 1e30);
+    astray.methods[2].estimates.stiffness.iter_mut().for_each(|stiffness| *stiffness *= 1e30);
     astray.nominal_stiffness = 3.0e6;
     let mut epoch = touching().trial("clock since 1970.csv");
     epoch.time.iter_mut().for_each(|time| *time += 1.7e9);
     let mut nan = touching().trial("nothing is a number.csv");
     nan.force.fill(f32::NAN);
     nan.penetration.fill(0.0);
-    nan.methods.iter_mut().for_each(|method| method.stiffness.fill(f32::NAN));
+    nan.methods.iter_mut().for_each(|method| method.estimates.stiffness.fill(f32::NAN));
     nan.nominal_stiffness = f64::NAN;
     vec![
         vague,
@@ -198,21 +260,24 @@ pub fn odd() -> Vec<Trial> {
 
 trait Grow {
     fn push(&mut self, values: [f64; 5]);
-    fn summarise(&self, trial: &Trial) -> Option<Summary>;
+    fn summarise(&self, trial: &Recorded) -> Option<Summary>;
 }
 
 impl Grow for Method {
     fn push(&mut self, values: [f64; 5]) {
-        let [stiffness, stiffness_half_width, damping, damping_half_width, innovation] = values.map(|v| v as f32);
-        self.stiffness.push(stiffness);
-        self.stiffness_half_width.push(stiffness_half_width);
-        self.damping.push(damping);
-        self.damping_half_width.push(damping_half_width);
-        self.innovation.push(innovation);
+        let of = &mut self.estimates;
+        let columns = [
+            &mut of.stiffness,
+            &mut of.stiffness_half_width,
+            &mut of.damping,
+            &mut of.damping_half_width,
+            &mut of.innovation,
+        ];
+        columns.into_iter().zip(values).for_each(|(column, value)| column.push(value as f32));
     }
 
-    fn summarise(&self, trial: &Trial) -> Option<Summary> {
-        let known = |row: &usize| trial.contact[*row] && self.stiffness_half_width[*row].is_finite();
+    fn summarise(&self, trial: &Recorded) -> Option<Summary> {
+        let known = |row: &usize| trial.contact[*row] && self.estimates.stiffness_half_width[*row].is_finite();
         let rows: Vec<usize> = (0..trial.time.len()).filter(known).collect();
         let median = |column: &[f32]| {
             let mut values: Vec<f32> = rows.iter().map(|&row| column[row]).collect();
@@ -221,11 +286,11 @@ impl Grow for Method {
         };
         let power = |column: &[f32]| -> f64 { rows.iter().map(|&row| f64::from(column[row]).powi(2)).sum() };
         Some(Summary {
-            stiffness: median(&self.stiffness)?,
-            stiffness_half_width: median(&self.stiffness_half_width)?,
-            damping: median(&self.damping)?,
-            damping_half_width: median(&self.damping_half_width)?,
-            rmse_percent: 100.0 * (power(&self.innovation) / power(&trial.force)).sqrt(),
+            stiffness: median(&self.estimates.stiffness)?,
+            stiffness_half_width: median(&self.estimates.stiffness_half_width)?,
+            damping: median(&self.estimates.damping)?,
+            damping_half_width: median(&self.estimates.damping_half_width)?,
+            rmse_percent: 100.0 * (power(&self.estimates.innovation) / power(&trial.force)).sqrt(),
         })
     }
 }
