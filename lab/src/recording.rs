@@ -13,6 +13,7 @@ mod npz_file;
 mod parquet_file;
 mod read;
 mod ros_message;
+mod text;
 
 use std::io::Write as _;
 use std::path::Path;
@@ -44,6 +45,20 @@ pub struct Recording {
     pub load: Option<Vec<f64>>,
 }
 
+/// What is kept of a recording. All of it is checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scope {
+    All,
+    /// What the estimators are fed.
+    Contact,
+}
+
+impl Scope {
+    fn holds(self, role: Role) -> bool {
+        self == Self::All || matches!(role, Role::Time | Role::Position | Role::Force)
+    }
+}
+
 impl Recording {
     /// Reads a recording by the column names of `rig`: CSV, NPZ, MAT version 5, Parquet or MCAP.
     ///
@@ -54,7 +69,15 @@ impl Recording {
     /// field is no finite number, a row is ragged, time does not increase, or there are fewer than two rows; with the true line in the
     /// file.
     pub fn read(path: &Path, rig: &Rig) -> Result<Self, InputError> {
-        read::recording(path, rig)
+        read::recording(path, rig, Scope::All)
+    }
+
+    /// As [`Recording::read`], and as strict, but only time, position and force are kept.
+    ///
+    /// # Errors
+    /// As [`Recording::read`].
+    pub fn read_contact(path: &Path, rig: &Rig) -> Result<Self, InputError> {
+        read::recording(path, rig, Scope::Contact)
     }
 
     /// The recording in `channels`, by the column names of `rig`; `name` is the trial's, also in errors.
@@ -63,7 +86,7 @@ impl Recording {
     /// A column is absent, of another length than the time, or of the other coordinate, a value is no finite number, or time does not
     /// increase.
     pub fn from_channels(name: String, channels: Vec<Channel>, rig: &Rig) -> Result<Self, InputError> {
-        assemble::recording(&channels, &name.clone(), name, rig)
+        assemble::recording(&channels, &name.clone(), name, rig, Scope::All)
     }
 
     /// As [`Recording::read`], with `added` in place of the file's columns of the same names.
@@ -75,7 +98,7 @@ impl Recording {
         channels.retain(|channel| added.iter().all(|added| added.name != channel.name));
         channels.extend(added);
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        assemble::recording(&channels, &path.display().to_string(), name, rig)
+        assemble::recording(&channels, &path.display().to_string(), name, rig, Scope::All)
     }
 
     /// Writes the recording under the column names of `rig`, so that the same rig reads it; whole or not at all.

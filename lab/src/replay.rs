@@ -87,7 +87,7 @@ pub struct Written {
 pub fn run(args: &ReplayArgs) -> Result<()> {
     let rig = Rig::read(&args.rig)?;
     let mut outputs = args.out.as_deref().map(|folder| Outputs::open(folder, &args.rig, &args.trials)).transpose()?;
-    let recordings = args.trials.iter().map(|path| Recording::read(path, &rig));
+    let recordings = args.trials.iter().map(|path| Recording::read_contact(path, &rig));
     let recordings = recordings.collect::<Result<Vec<_>, InputError>>()?;
     let runner = Runner::prepare(args.on)?;
     let mut sinks = outputs.as_mut().map(|outputs| outputs.sinks(rig.coordinate)).unwrap_or_default().into_iter();

@@ -2,25 +2,31 @@
 
 use super::columns::{self, Role};
 use super::data_file::{Channel, Content};
-use super::{Recording, computed_effort};
+use super::{Recording, Scope, computed_effort};
 use crate::error::InputError;
 use crate::rig::Rig;
 
-/// The recording that `rig` finds in `channels`; `place` names the file, `name` the trial.
+/// What `scope` holds of the recording that `rig` finds in `channels`; `place` names the file, `name` the trial.
 ///
 /// Channels with a clock of their own are brought onto that of the position by straight lines between their values, over the time
 /// that all of them cover.
 ///
 /// # Errors
 /// As [`Recording::read`].
-pub fn recording(channels: &[Channel], place: &str, name: String, rig: &Rig) -> Result<Recording, InputError> {
+pub fn recording(
+    channels: &[Channel],
+    place: &str,
+    name: String,
+    rig: &Rig,
+    scope: Scope,
+) -> Result<Recording, InputError> {
     let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
     let has_clocks = channels.iter().any(|channel| channel.clock.is_some()) && rig.columns.time.is_none();
     let found = columns::find(&names, rig, place, has_clocks)?;
     let series =
         found.iter().map(|(role, at)| Series::of(place, *role, &channels[*at])).collect::<Result<Vec<_>, _>>()?;
     let recording = if has_clocks { resampled(place, series)? } else { aligned(place, series)? };
-    let recording = Recording { name, ..into_recording(recording, rig) };
+    let recording = Recording { name, ..into_recording(recording, rig, scope) };
     increasing(place, &recording.time)?;
     Ok(recording)
 }
@@ -126,11 +132,11 @@ fn increasing(place: &str, time: &[f64]) -> Result<(), InputError> {
     }
 }
 
-/// The channels in their places, and the effort from the motor's input or the control law where the rig says how.
-pub fn into_recording(channels: Vec<(Role, Vec<f64>)>, rig: &Rig) -> Recording {
+/// The channels of `scope` in their places, and the effort from the motor's input or the control law where the rig says how.
+pub fn into_recording(channels: Vec<(Role, Vec<f64>)>, rig: &Rig, scope: Scope) -> Recording {
     let mut recording = Recording::default();
     let mut input = None;
-    for (role, values) in channels {
+    for (role, values) in channels.into_iter().filter(|(role, _)| scope.holds(*role)) {
         match role {
             Role::Time => recording.time = values,
             Role::Position => recording.position = values,
@@ -142,7 +148,8 @@ pub fn into_recording(channels: Vec<(Role, Vec<f64>)>, rig: &Rig) -> Recording {
             Role::MotorInput => input = Some(values),
         }
     }
-    if recording.effort.is_none()
+    if scope.holds(Role::Effort)
+        && recording.effort.is_none()
         && let Some(law) = &rig.effort
     {
         recording.effort = computed_effort::effort(law, &recording, input.as_deref());

@@ -1,5 +1,7 @@
 //! What any file holds: named channels of numbers, before the rig file gives them roles.
 
+use std::fs::File;
+use std::io::{self, Cursor, Read, Seek};
 use std::path::Path;
 
 use super::format::Format;
@@ -91,17 +93,39 @@ impl DataFile {
     }
 }
 
+/// A file that can be read more than once.
+pub trait Source: Read + Seek {}
+
+impl<T: Read + Seek> Source for T {}
+
+/// Opens a recording. What comes through a pipe, which can be read only once, is taken into memory.
+///
+/// # Errors
+/// There is no such file, or it cannot be read.
+pub fn open(path: &Path) -> Result<Box<dyn Source>, InputError> {
+    let mut file = File::open(path).map_err(|error| unreadable(path, &error))?;
+    if file.metadata().is_ok_and(|found| found.is_file()) {
+        return Ok(Box::new(file));
+    }
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).map_err(|error| unreadable(path, &error))?;
+    Ok(Box::new(Cursor::new(bytes)))
+}
+
 /// The bytes of a recording.
 ///
 /// # Errors
 /// There is no such file, or it cannot be read.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>, InputError> {
-    std::fs::read(path).map_err(|error| {
-        let found = match error.kind() {
-            std::io::ErrorKind::NotFound => "no such file".to_owned(),
-            std::io::ErrorKind::IsADirectory => "a folder".to_owned(),
-            _ => error.to_string(),
-        };
-        InputError::new(path.display(), found, "a recording that can be read")
-    })
+    std::fs::read(path).map_err(|error| unreadable(path, &error))
+}
+
+/// The error of reading `path`.
+pub fn unreadable(path: &Path, error: &io::Error) -> InputError {
+    let found = match error.kind() {
+        io::ErrorKind::NotFound => "no such file".to_owned(),
+        io::ErrorKind::IsADirectory => "a folder".to_owned(),
+        _ => error.to_string(),
+    };
+    InputError::new(path.display(), found, "a recording that can be read")
 }

@@ -43,7 +43,10 @@ impl Format {
         }
     }
 
-    /// The format of `bytes`, the content of `path`. A file without an ending of its own may hold any of them.
+    /// Bytes at the beginning of a file by which its format is known.
+    pub const HEAD_BYTES: u64 = 4096;
+
+    /// The format of `path`, whose content begins with `bytes`. A file without an ending of its own may hold any of them.
     ///
     /// # Errors
     /// The content is of another format than the ending says, or of one that is not read.

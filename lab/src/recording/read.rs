@@ -1,5 +1,6 @@
 //! From a file to a [`Recording`]; CSV row by row, so that errors name the line.
 
+use std::io::{self, Read, Seek};
 use std::path::Path;
 
 use csv::{ByteRecord, ReaderBuilder};
@@ -7,127 +8,176 @@ use csv::{ByteRecord, ReaderBuilder};
 use super::columns::{self, Found, Role};
 use super::data_file::{self, DataFile};
 use super::format::Format;
-use super::{Recording, assemble};
+use super::text::{line_at, survey};
+use super::{Recording, Scope, assemble};
 use crate::error::InputError;
 use crate::rig::Rig;
 
-/// See [`Recording::read`].
-pub fn recording(path: &Path, rig: &Rig) -> Result<Recording, InputError> {
+/// See [`Recording::read`]; what `scope` leaves out is read and checked too.
+pub fn recording(path: &Path, rig: &Rig, scope: Scope) -> Result<Recording, InputError> {
     let place = path.display().to_string();
-    let bytes = data_file::read_bytes(path)?;
+    let fault = |error: io::Error| data_file::unreadable(path, &error);
+    let mut source = data_file::open(path)?;
+    let mut bytes = Vec::new();
+    source.by_ref().take(Format::HEAD_BYTES).read_to_end(&mut bytes).map_err(fault)?;
     let name = path.file_name().map_or_else(|| place.clone(), |name| name.to_string_lossy().into_owned());
     match Format::of(path, &bytes)? {
-        Format::Csv => File { place, bytes: &bytes }.parse(name, rig),
-        format => assemble::recording(&DataFile::parse(&place, format, &bytes)?.channels, &place, name, rig),
+        Format::Csv => File { place, path, source }.parse(name, rig, scope),
+        format => {
+            source.read_to_end(&mut bytes).map_err(fault)?;
+            assemble::recording(&DataFile::parse(&place, format, &bytes)?.channels, &place, name, rig, scope)
+        }
     }
 }
 
-/// A file in memory. The CSV reader skips a byte order mark by itself.
-struct File<'a> {
+/// A file that is gone through several times and never held. The CSV reader skips a byte order mark by itself.
+struct File<'a, S> {
     place: String,
-    bytes: &'a [u8],
+    path: &'a Path,
+    source: S,
 }
 
-/// The columns wanted and what they hold so far.
+/// The columns wanted and what they hold so far; a column that is only checked holds nothing.
 struct Channels {
     found: Vec<Found>,
     names: Vec<String>,
     values: Vec<Vec<f64>>,
+    scope: Scope,
 }
 
-impl File<'_> {
-    fn parse(&self, name: String, rig: &Rig) -> Result<Recording, InputError> {
-        self.refuse_other_text()?;
-        let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(self.bytes);
-        let mut record = ByteRecord::new();
-        let read = |reader: &mut csv::Reader<&[u8]>, record: &mut ByteRecord| {
-            reader.read_byte_record(record).map_err(|error| InputError::new(&self.place, error, "CSV"))
-        };
-        if !read(&mut reader, &mut record)? {
-            return Err(InputError::new(&self.place, "an empty file", "a header row and at least two rows of numbers"));
-        }
-        let width = record.len();
-        let mut channels = self.channels(&record, rig)?;
-        while read(&mut reader, &mut record)? {
-            if record.len() != width {
-                let found = format!("{} fields", record.len());
-                return Err(InputError::new(self.line(&record), found, format!("{width}, as in the header")));
-            }
-            self.take(&record, &mut channels)?;
-        }
-        let rows = channels.values[0].len();
-        if rows < 2 {
-            let found = if rows == 0 { "a header and no rows" } else { "a header and a single row" };
-            return Err(InputError::new(&self.place, found, "at least two rows of numbers"));
-        }
+/// What is wrong with a record.
+struct Fault {
+    /// Where the record begins; `None` where the fault is the file's.
+    byte: Option<usize>,
+    column: Option<String>,
+    found: String,
+    expected: String,
+}
+
+impl<S: Read + Seek> File<'_, S> {
+    fn parse(mut self, name: String, rig: &Rig, scope: Scope) -> Result<Recording, InputError> {
+        let lines = self.lines_of_text()?;
+        let header = self.records(Self::header)?;
+        let names: Vec<_> = header.iter().map(text).collect();
+        let found = columns::find(&names, rig, &self.line(start(&header))?, false)?;
+        let taken = found.iter().map(|(_, column)| names[*column].to_owned()).collect();
+        let room = |(role, _): &Found| Vec::with_capacity(if scope.holds(*role) { lines } else { 0 });
+        let mut channels = Channels { values: found.iter().map(room).collect(), found, names: taken, scope };
+        self.records(|reader| channels.take_all(reader, header.len()))?;
         Ok(channels.into_recording(name, rig))
     }
 
-    fn refuse_other_text(&self) -> Result<(), InputError> {
-        match std::str::from_utf8(self.bytes) {
-            Ok(_) => Ok(()),
-            Err(error) => {
-                let place = format!("{}:{}", self.place, line_at(self.bytes, error.valid_up_to()));
-                Err(InputError::new(place, "bytes that are not UTF-8", "text in UTF-8"))
-            }
+    /// Goes through the records, from the header on.
+    fn records<T>(&mut self, read: impl FnOnce(&mut csv::Reader<&mut S>) -> Result<T, Fault>) -> Result<T, InputError> {
+        self.source.rewind().map_err(|error| data_file::unreadable(self.path, &error))?;
+        let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(&mut self.source);
+        let done = read(&mut reader);
+        drop(reader);
+        done.map_err(|fault| self.located(fault))
+    }
+
+    fn header(reader: &mut csv::Reader<&mut S>) -> Result<ByteRecord, Fault> {
+        let mut record = ByteRecord::new();
+        match next(reader, &mut record)? {
+            true => Ok(record),
+            false => Err(Fault::of_file("an empty file", "a header row and at least two rows of numbers")),
         }
     }
 
-    fn channels(&self, header: &ByteRecord, rig: &Rig) -> Result<Channels, InputError> {
-        let names: Vec<_> = header.iter().map(text).collect();
-        let found = columns::find(&names, rig, &self.line(header), false)?;
-        let taken = found.iter().map(|(_, column)| names[*column].to_owned()).collect();
-        let rows = self.bytes.len() / (8 * names.len()).max(1);
-        let values = found.iter().map(|_| Vec::with_capacity(rows)).collect();
-        Ok(Channels { found, names: taken, values })
-    }
-
-    fn take(&self, record: &ByteRecord, channels: &mut Channels) -> Result<(), InputError> {
-        for (at, (role, column)) in channels.found.iter().enumerate() {
-            let field = text(&record[*column]);
-            let value = field.parse::<f64>().ok().filter(|value| value.is_finite());
-            let values = &mut channels.values[at];
-            let fault = |found: String, expected: String| {
-                let place = format!("{}: column {}", self.line(record), channels.names[at]);
-                Err(InputError::new(place, found, expected))
-            };
-            let Some(value) = value else {
-                return match field.parse::<f64>() {
-                    Ok(_) => fault(format!("\"{field}\""), "a finite number".to_owned()),
-                    Err(_) if field.is_empty() => fault("an empty field".to_owned(), "a number".to_owned()),
-                    Err(_) => fault(format!("the text \"{field}\""), "a number".to_owned()),
-                };
-            };
-            if let (Role::Time, Some(&before)) = (role, values.last())
-                && value <= before
-            {
-                return fault(format!("{value} after {before}"), "time that strictly increases".to_owned());
-            }
-            values.push(value);
+    /// How many lines the file has at most.
+    fn lines_of_text(&mut self) -> Result<usize, InputError> {
+        let unreadable = |error| data_file::unreadable(self.path, &error);
+        self.source.rewind().map_err(unreadable)?;
+        match survey(&mut self.source).map_err(unreadable)? {
+            Ok(lines) => Ok(lines),
+            Err(byte) => Err(InputError::new(self.line(byte)?, "bytes that are not UTF-8", "text in UTF-8")),
         }
-        Ok(())
     }
 
-    /// File and line of `record`. Counted only here: the reader's own count is off after CRLF and blank lines.
-    fn line(&self, record: &ByteRecord) -> String {
-        let start = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
-        let rest = self.bytes.get(start..).unwrap_or_default();
-        let skipped = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
-        format!("{}:{}", self.place, line_at(self.bytes, start + skipped))
+    fn located(&mut self, fault: Fault) -> InputError {
+        let place = match fault.byte.map(|byte| self.line(byte)) {
+            None => self.place.clone(),
+            Some(Ok(line)) => line,
+            Some(Err(error)) => return error,
+        };
+        let place = fault.column.map_or_else(|| place.clone(), |column| format!("{place}: column {column}"));
+        InputError::new(place, fault.found, fault.expected)
+    }
+
+    /// File and line of the record at `byte`. Counted only here: the reader's own count is off after CRLF and blank lines.
+    fn line(&mut self, byte: usize) -> Result<String, InputError> {
+        let unreadable = |error| data_file::unreadable(self.path, &error);
+        self.source.rewind().map_err(unreadable)?;
+        let line = line_at(&mut self.source, byte).map_err(unreadable)?;
+        Ok(format!("{}:{line}", self.place))
+    }
+}
+
+/// Reads the next record; whether there is one.
+fn next(reader: &mut csv::Reader<impl Read>, record: &mut ByteRecord) -> Result<bool, Fault> {
+    reader.read_byte_record(record).map_err(|error| Fault::of_file(error, "CSV"))
+}
+
+fn start(record: &ByteRecord) -> usize {
+    record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0))
+}
+
+impl Fault {
+    fn of_file(found: impl ToString, expected: &str) -> Self {
+        Self { byte: None, column: None, found: found.to_string(), expected: expected.to_owned() }
     }
 }
 
 impl Channels {
+    /// Takes every record after the header, which has `width` fields.
+    fn take_all(&mut self, reader: &mut csv::Reader<impl Read>, width: usize) -> Result<(), Fault> {
+        let mut record = ByteRecord::new();
+        next(reader, &mut record)?;
+        while next(reader, &mut record)? {
+            if record.len() != width {
+                let (found, expected) = (format!("{} fields", record.len()), format!("{width}, as in the header"));
+                return Err(Fault { byte: Some(start(&record)), column: None, found, expected });
+            }
+            self.take(&record)?;
+        }
+        // Time comes first, and is always held.
+        match self.values[0].len() {
+            0 => Err(Fault::of_file("a header and no rows", "at least two rows of numbers")),
+            1 => Err(Fault::of_file("a header and a single row", "at least two rows of numbers")),
+            _ => Ok(()),
+        }
+    }
+
+    fn take(&mut self, record: &ByteRecord) -> Result<(), Fault> {
+        for (at, (role, column)) in self.found.iter().enumerate() {
+            let values = &mut self.values[at];
+            let fault = |found: String, expected: &str| {
+                let column = Some(self.names[at].clone());
+                Err(Fault { byte: Some(start(record)), column, found, expected: expected.to_owned() })
+            };
+            let field = text(&record[*column]);
+            let value = match field.parse::<f64>() {
+                Ok(value) if value.is_finite() => value,
+                Ok(_) => return fault(format!("\"{field}\""), "a finite number"),
+                Err(_) if field.is_empty() => return fault("an empty field".to_owned(), "a number"),
+                Err(_) => return fault(format!("the text \"{field}\""), "a number"),
+            };
+            if let (Role::Time, Some(&before)) = (role, values.last())
+                && value <= before
+            {
+                return fault(format!("{value} after {before}"), "time that strictly increases");
+            }
+            if self.scope.holds(*role) {
+                values.push(value);
+            }
+        }
+        Ok(())
+    }
+
     fn into_recording(self, name: String, rig: &Rig) -> Recording {
         let channels = self.found.into_iter().zip(self.values).map(|((role, _), values)| (role, values)).collect();
-        Recording { name, ..assemble::into_recording(channels, rig) }
+        Recording { name, ..assemble::into_recording(channels, rig, self.scope) }
     }
-}
-
-/// Line of byte `at`, counted from one; a line ends at LF, CRLF or CR.
-fn line_at(bytes: &[u8], at: usize) -> usize {
-    let ends = |i: usize| bytes[i] == b'\n' || (bytes[i] == b'\r' && bytes.get(i + 1) != Some(&b'\n'));
-    1 + (0..at.min(bytes.len())).filter(|&i| ends(i)).count()
 }
 
 /// The file was found to be UTF-8; a quoted field cannot cut a character either.
@@ -144,8 +194,9 @@ mod tests {
             "[rig]\nname = \"bench\"\n[contact]\nsurface_m = 0.0\nstiffness_n_m = 300.0\ndamping_n_s_m = 5.0\n",
             "rig.toml",
         );
-        let file = File { place: "trial.csv".to_owned(), bytes: text.as_bytes() };
-        file.parse("trial.csv".to_owned(), &rig.unwrap())
+        let (path, source) = (Path::new("trial.csv"), io::Cursor::new(text.as_bytes()));
+        let file = File { place: "trial.csv".to_owned(), path, source };
+        file.parse("trial.csv".to_owned(), &rig.unwrap(), Scope::All)
     }
 
     #[test]

@@ -26,11 +26,16 @@ pub fn white_noise(time: &[f64], values: &[f64]) -> f64 {
         return 0.0;
     }
     let reach = FILTER_SPAN.min(rows);
-    let residuals: Vec<_> =
-        (0..=rows - reach).map(|at| residual(&time[at..at + reach], &values[at..at + reach])).collect();
-    let mut votes: Vec<_> = residuals.chunks(BLOCK_SAMPLES).map(mean_square).collect();
+    let residuals = rows - reach + 1;
+    let mut votes: Vec<_> = (0..residuals)
+        .step_by(BLOCK_SAMPLES)
+        .map(|start| {
+            let block = start..(start + BLOCK_SAMPLES).min(residuals);
+            mean_square(block.map(|at| residual(&time[at..at + reach], &values[at..at + reach])))
+        })
+        .collect();
     // A short remainder counts as much as a block: leave it out where there is anything else.
-    if residuals.len() % BLOCK_SAMPLES != 0 && votes.len() > 1 {
+    if !residuals.is_multiple_of(BLOCK_SAMPLES) && votes.len() > 1 {
         votes.pop();
     }
     let middle = votes.len() / 2;
@@ -39,8 +44,9 @@ pub fn white_noise(time: &[f64], values: &[f64]) -> f64 {
     if votes.len() > 2 { (median / MEDIAN_OVER_MEAN).sqrt() } else { median.sqrt() }
 }
 
-fn mean_square(block: &[f64]) -> f64 {
-    block.iter().map(|residual| residual * residual).sum::<f64>() / block.len() as f64
+fn mean_square(block: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = block.len() as f64;
+    block.map(|residual| residual * residual).sum::<f64>() / count
 }
 
 /// The divided difference of all points, its weights scaled to unit length.

@@ -31,7 +31,8 @@ pub fn quantum(values: &[f64]) -> f64 {
     sorted.sort_unstable_by(f64::total_cmp);
     let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let grain = 8.0 * f64::EPSILON * largest;
-    let mut gaps: Vec<_> = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > grain).collect();
+    let mut gaps = gaps_of(sorted);
+    gaps.retain(|gap| *gap > grain);
     if gaps.is_empty() {
         return 0.0;
     }
@@ -51,6 +52,13 @@ pub fn quantum(values: &[f64]) -> f64 {
         true if decimal > 8.0 * grain => decimal,
         true => 0.0,
     }
+}
+
+/// What lies between neighbours, in the room of the values themselves: a long recording is not held once more.
+fn gaps_of(mut sorted: Vec<f64>) -> Vec<f64> {
+    (1..sorted.len()).for_each(|at| sorted[at - 1] = sorted[at] - sorted[at - 1]);
+    sorted.pop();
+    sorted
 }
 
 /// Whether `step` is what the motion does from one reading to the next: a perfect ramp, not a rounded one. A rounded ramp
