@@ -5,7 +5,8 @@ use crate::framing::{LinkCounters, Receiver};
 use crate::input::{INPUT_BYTES, Input};
 use crate::link::{Command, FEED, Request, Source, Streams};
 use crate::settings::Settings;
-use crate::trajectory::{POINTS, TrajectoryConfig};
+use crate::trajectory::POINTS;
+use crate::trajectory_config::TrajectoryConfig;
 
 /// What a request comes down to.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -37,6 +37,8 @@ pub mod replay_format;
 mod settings;
 mod tare;
 mod trajectory;
+mod trajectory_config;
+mod trajectory_status;
 
 pub use bus::{BoundedSpi, BusFault};
 pub use calibration::{CALIBRATION_BYTES, Calibration, CalibrationFault, PositionSensor, Scale};
@@ -49,7 +51,9 @@ pub use faults::Faults;
 pub use input::{INPUT_BYTES, Input, InputStatus};
 pub use quadrature::{EncoderCounter, Quadrature};
 pub use settings::Settings;
-pub use trajectory::{POINTS, StopReason, TrajectoryConfig, TrajectoryFollower, TrajectoryState, TrajectoryStatus};
+pub use trajectory::{POINTS, TrajectoryFollower};
+pub use trajectory_config::TrajectoryConfig;
+pub use trajectory_status::{StopReason, TrajectoryState, TrajectoryStatus};
 
 /// Ticks of the interrupt in a second.
 pub const TICK_HZ: u16 = 1_000;

@@ -5,12 +5,12 @@
 //! from running dry. effort = proportional e + derivative de/dt, e = reference - depth, de/dt behind a first-order low-pass; it
 //! never leaves the limit of the effort. Once a run has ended, for whatever reason, the effort is zero until the next start.
 
-use serde::{Deserialize, Serialize};
-
 use crate::cycle::Report;
+use crate::trajectory_config::TrajectoryConfig;
+use crate::trajectory_status::{StopReason, TrajectoryState, TrajectoryStatus};
 use crate::{Faults, TICK_HZ};
 use palpate::Sample;
-use palpate::error::{ConfigError, require, require_not_negative, require_positive};
+use palpate::error::ConfigError;
 use palpate::math::{larger, smaller};
 
 /// Ticks between two readings of which a speed is taken.
@@ -18,94 +18,6 @@ const SPEED_TICKS: usize = 16;
 
 /// Most references of one request.
 pub const POINTS: usize = 32;
-
-/// How a trajectory is followed, and what it must not pass.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct TrajectoryConfig {
-    /// Depths that the tool must not leave, from the surface, m: least and greatest.
-    pub depth: [f32; 2],
-    /// Greatest speed, mean over 16 ticks, m/s.
-    pub speed: f32,
-    /// Greatest contact force either way, N.
-    pub force: f32,
-    /// Greatest effort either way, N.
-    pub effort: f32,
-    /// N/m.
-    pub proportional: f32,
-    /// N s/m.
-    pub derivative: f32,
-    /// Share of a new difference of the error that passes the low-pass of its rate, above 0, at most 1.
-    pub pass: f32,
-    /// References of the whole run.
-    pub length: u32,
-    /// Ticks without a request of the host after which the run ends: 10 to 2000.
-    pub timeout: u16,
-}
-
-impl TrajectoryConfig {
-    /// Whether a run can be prepared with it.
-    ///
-    /// # Errors
-    /// The value that is out of its range.
-    pub fn check(&self) -> Result<(), ConfigError> {
-        let [least, greatest] = self.depth;
-        require(least.is_finite() && greatest.is_finite() && least < greatest, "depth", "a range")?;
-        require_positive(self.speed, "speed")?;
-        require_positive(self.force, "force")?;
-        require_positive(self.effort, "effort")?;
-        require_positive(self.proportional, "proportional")?;
-        require_not_negative(self.derivative, "derivative")?;
-        require(self.pass > 0.0 && self.pass <= 1.0, "pass", "above 0, at most 1")?;
-        require(self.length > 0, "length", "at least one reference")?;
-        require((10..=2_000).contains(&self.timeout), "timeout", "10 to 2000 ticks")
-    }
-}
-
-/// Where a run stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum TrajectoryState {
-    /// Nothing was prepared.
-    #[default]
-    Idle,
-    /// Prepared, not started: no effort.
-    Prepared,
-    /// Being followed.
-    Running,
-    /// The last reference was reached.
-    Finished,
-    /// Ended before.
-    Stopped(StopReason),
-}
-
-/// Why a run ended before its last reference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum StopReason {
-    /// The host asked for it.
-    Requested,
-    /// The depth left its range.
-    Depth,
-    /// The speed passed its limit.
-    Speed,
-    /// The force passed its limit.
-    Force,
-    /// A fault of the drive, or a tick without a good sample.
-    Fault,
-    /// No request of the host for longer than the timeout.
-    Silence,
-    /// The queue of references ran dry.
-    Underrun,
-    /// A reference that is no number.
-    Reference,
-}
-
-/// Where a run stands, and how far it came.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct TrajectoryStatus {
-    /// Where it stands.
-    pub state: TrajectoryState,
-    /// References that were followed.
-    pub played: u32,
-}
 
 /// Follows a trajectory, tick by tick.
 #[derive(Debug, Clone)]
