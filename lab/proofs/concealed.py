@@ -56,6 +56,8 @@ def sensors():
         return Case(name, lambda: Machine(touching(), reading=reading), touching(), TOUCHING_RIG, contacts, 3, 4)
 
     time = lambda force, dt: np.arange(len(force)) * dt
+    # MuJoCo's own sensor feels what it carries.
+    heavy_tool = lambda: Machine(touching(beyond=0.05))
     return [
         case("channel_delay", lambda force, dt: np.interp(time(force, dt) - 0.0035, time(force, dt), force)),
         case("force_saturation", lambda force, dt: np.clip(force, -7.0, 7.0)),
@@ -64,6 +66,7 @@ def sensors():
         case("force_bias", lambda force, dt: force + 0.4),
         case("force_drift", lambda force, dt: force + 0.05 * time(force, dt)),
         case("mains_hum", lambda force, dt: force + 0.2 * np.sin(2 * np.pi * 50.0 * time(force, dt))),
+        Case("tool_inertia", heavy_tool, touching(), TOUCHING_RIG, contacts, 3, 4),
     ]
 
 

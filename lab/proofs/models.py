@@ -31,7 +31,7 @@ TOUCHING = """<mujoco model="press">
       <joint name="axis" type="slide" axis="1 0 0" damping="4.0"/>
       <inertial pos="0 0 0" mass="{mass}" diaginertia="1 1 1"/>
       <body name="tip">
-        <inertial pos="0 0 0" mass="1e-6" diaginertia="1e-9 1e-9 1e-9"/>
+        <inertial pos="0 0 0" mass="{beyond}" diaginertia="1e-9 1e-9 1e-9"/>
         <site name="flange"/>
         <geom name="tip" type="sphere" pos="-0.05 0 0" size="0.05" condim="1" priority="1" solref="{solref}" solimp="1e-4 1e-4 1"/>
       </body>
@@ -77,9 +77,9 @@ def plain(kind="slide", mass=MASS_KG, damping=DAMPING, armature=0.0):
     return PLAIN.format(kind=kind, mass=mass, damping=damping, armature=armature)
 
 
-def touching():
-    """The axis before a surface of STIFFNESS and CONTACT_DAMPING."""
-    values = {"surface": SURFACE_M, "mass": MASS_KG - 1e-6}
+def touching(beyond=1e-6):
+    """The axis before a surface of STIFFNESS and CONTACT_DAMPING; of its mass `beyond` is on the tool's side of the force sensor."""
+    values = {"surface": SURFACE_M, "mass": MASS_KG - beyond, "beyond": beyond}
     first = mujoco.MjModel.from_xml_string(TOUCHING.format(**values, solref="-1 -1"))
     impedance = 1e-4
     inverse = first.body_invweight0[first.geom_bodyid[first.geom("tip").id], 0]
