@@ -37,7 +37,7 @@ pub struct Calibration {
     pub max_speed: f32,
     /// Force of one count, negative where a push lowers the count, N.
     pub force_gain: f32,
-    /// CountersMessage of the converter without any force, from zero volt.
+    /// Counts of the converter without any force, from zero volt.
     pub force_zero: f32,
     /// Largest force that the sensor is calibrated for, N.
     pub force_limit: f32,

@@ -14,13 +14,13 @@ use crate::output_paths;
 /// Make the calibration block that a drive reads from its flash
 #[derive(Debug, Clone, Args)]
 pub struct CalibrateArgs {
-    /// The calibration, as docs/drive.md has it; without it an example is printed
-    #[arg(value_name = "CALIBRATION.toml")]
+    /// The calibration, an example that was edited (docs/drive.md has the steps)
+    #[arg(value_name = "CALIBRATION.toml", required_unless_present = "example")]
     pub calibration: Option<PathBuf>,
     /// The block to write, for the flash at 0x080E0000
     #[arg(long, value_name = "CALIBRATION.bin", required_unless_present = "example", requires = "calibration")]
     pub out: Option<PathBuf>,
-    /// Print an example to copy
+    /// Print an example to copy, each key with its meaning and unit
     #[arg(long)]
     pub example: bool,
 }
@@ -31,7 +31,7 @@ pub struct CalibrateArgs {
 /// The file is at fault, or the block cannot be written.
 pub fn run(args: &CalibrateArgs) -> Result<()> {
     let (Some(path), Some(out)) = (&args.calibration, &args.out) else {
-        print!("{}", toml::to_string(&Calibration::DEFAULT).context("the default calibration is no TOML")?);
+        print!("{}", example()?);
         return Ok(());
     };
     output_paths::check(&[path], &[("--out", out)])?;
@@ -49,6 +49,41 @@ pub fn run(args: &CalibrateArgs) -> Result<()> {
     file.write_all(block).map_err(|error| file.fault(&error))?;
     file.commit()?;
     Ok(())
+}
+
+/// The meaning of each key, for the reader of the example.
+const KEYS: [(&str, &str); 15] = [
+    ("date", "when it was made, as 20261121; 0: not said"),
+    ("position_sensor", "\"As5047p\" (absolute, one turn) or \"Quadrature\""),
+    ("counts_per_turn", "of the encoder: 16384, or four times the lines of a quadrature encoder"),
+    ("travel_per_turn", "m of the tool in a turn of the encoder; negative where they run against each other"),
+    ("centre", "reading of the absolute encoder in the middle of the travel"),
+    ("surface", "counts from `centre` at which contact begins"),
+    ("travel", "m from the surface: first and last position that can be"),
+    ("max_speed", "m/s, the fastest that the tool can go"),
+    ("force_gain", "N a count of the converter; negative where a push lowers the count"),
+    ("force_zero", "counts without any force"),
+    ("force_limit", "N, the largest force that the sensor is calibrated for"),
+    ("force_noise", "N, standard deviation with nothing touching, rounding included"),
+    ("tare_limit", "N, how far a tare may move the zero"),
+    (
+        "range",
+        "of the converter's input: \"Volts2\" (2.56 V either way), \"Volts5\", \"Volts6\", \"Volts10\" or \"Volts12\"",
+    ),
+    ("stuck_after", "ms of one and the same reading after which position and force are stuck; 0: never"),
+];
+
+/// The default calibration, each key with its meaning.
+fn example() -> Result<String> {
+    let plain = toml::to_string(&Calibration::DEFAULT).context("the default calibration is no TOML")?;
+    let width = plain.lines().map(str::len).max().unwrap_or(0);
+    let meaning = |line: &str| KEYS.into_iter().find(|(key, _)| line.split(' ').next() == Some(*key));
+    let line = |line| match meaning(line) {
+        Some((_, meaning)) => format!("{line:<width$}  # {meaning}\n"),
+        None => format!("{line}\n"),
+    };
+    let head = "# On a rotary joint read rad for m and N m for N.\n".to_owned();
+    Ok(plain.lines().map(line).fold(head, |text, line| text + &line))
 }
 
 /// A key that nobody reads is a slip of the pen: what it was to say would silently be the default or the line above.
@@ -112,6 +147,18 @@ mod tests {
             ("date", Calibration { date: u32::MAX, ..default }),
         ] {
             assert_eq!(plausible(&calibration).unwrap_err().0, key);
+        }
+    }
+
+    #[test]
+    fn the_example_tells_every_key_and_reads_back_as_the_default() {
+        let text = example().unwrap();
+        assert_eq!(toml::from_str::<Calibration>(&text).unwrap(), Calibration::DEFAULT);
+        let keys: Vec<String> = toml::Table::try_from(Calibration::DEFAULT).unwrap().keys().cloned().collect();
+        assert_eq!(keys.len(), KEYS.len());
+        for key in keys {
+            let line = text.lines().find(|line| line.starts_with(&format!("{key} "))).unwrap();
+            assert!(line.contains("  # "), "{line}");
         }
     }
 
