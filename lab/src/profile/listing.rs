@@ -8,16 +8,34 @@ use super::counts::Case;
 use super::figures::Figures;
 use super::image::Image;
 use super::table::NO_BOARD;
+use crate::page::quantity::{count, percent};
+use crate::tools::TARGET;
 
-const STYLE: &str = include_str!("../../assets/profile.css");
+const STYLE: &str = concat!(include_str!("../../assets/page.css"), include_str!("../../assets/profile.css"));
 
-/// Bars below this share of an update are not drawn.
+/// Parts below this share of an update are not drawn.
 const MIN_SHARE: f64 = 0.002;
+/// Parts below this share have no room for a name.
+const MIN_NAMED_SHARE: f64 = 0.08;
+
+/// An update that was measured.
+#[derive(Clone, Copy)]
+struct Update<'a> {
+    case: &'a Case,
+    figures: &'a Figures,
+    /// The place on the page.
+    at: usize,
+}
 
 /// The page.
 pub fn page(image: &Image, cases: &[Case], figures: &[Figures]) -> String {
-    let sections: Vec<(usize, &Case, &Figures)> =
-        cases.iter().skip(1).zip(figures).enumerate().map(|(at, (case, figures))| (at, case, figures)).collect();
+    let updates: Vec<Update<'_>> = cases
+        .iter()
+        .skip(1)
+        .zip(figures)
+        .enumerate()
+        .map(|(at, (case, figures))| Update { case, figures, at })
+        .collect();
     let empty = cases.first().and_then(|case| case.passes.first()).map_or(0, |pass| pass.instructions);
     html! {
         (DOCTYPE)
@@ -27,53 +45,116 @@ pub fn page(image: &Image, cases: &[Case], figures: &[Figures]) -> String {
                 meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { "Where the instructions go" }
+                title { "What an update costs – palpate profile" }
                 style { (PreEscaped(STYLE)) }
             }
             body { main {
-                h1 { "Where the instructions go" }
-                p { (NO_BOARD) " Each bar is the mean update; its parts are the functions that it runs through, the largest first. Open \
-                     one for its listing: executions in the mean update, address, instruction. The parts include the call of the \
-                     measurement itself ("
-                     (empty) " instructions), which is subtracted from the figure above each bar." }
-                @for (_, case, figures) in &sections { (estimator(image, case, figures)) }
+                p.eyebrow { "Palpate profile · " (TARGET) " under QEMU" }
+                h1 { "What an update costs, and where its instructions go" }
+                (summary(&updates))
+                h2 { "Where they go" }
+                p.law {
+                    "A bar is the mean update, whatever it costs: its parts are shares of it, by the functions that it runs through. "
+                    "Each function below opens to its listing: executions in the mean update, address, instruction. A law that the compiler "
+                    "put into its caller is counted under the caller, " code { "measurement::call" } ". The parts include what the "
+                    "measurement itself takes (" (empty) " instructions), which is subtracted from the figures."
+                }
+                @for update in &updates { (section(image, *update)) }
             } }
         }
     }
     .into_string()
 }
 
-fn estimator(image: &Image, case: &Case, figures: &Figures) -> Markup {
+/// The answer, and a line for each update.
+fn summary(updates: &[Update<'_>]) -> Markup {
+    let share = |update: &Update<'_>| update.figures.share_of_1ms_percent;
+    let least = updates.iter().min_by(|a, b| share(a).total_cmp(&share(b)));
+    let most = updates.iter().max_by(|a, b| share(a).total_cmp(&share(b)));
+    html! {
+        @if let (Some(least), Some(most)) = (least, most) {
+            p.lead {
+                "At worst an update takes between " strong { (percent(share(least))) } " (" (name_of(least.figures)) ") and "
+                strong { (percent(share(most))) } " (" (name_of(most.figures)) ") of a millisecond at 168 MHz. "
+                span.aside { (NO_BOARD) " No wait for flash or bus is in them." }
+            }
+        }
+        div.wide tabindex="0" role="region" aria-label="Cost of every update" {
+            table {
+                caption { "Choose an update to see where its instructions go. Cycles are those of the worst update, at least and at most." }
+                thead { tr {
+                    @for title in ["Update", "Instructions, mean", "worst", "Cycles", "Of 1 ms", "State, bytes"] {
+                        th scope="col" { (title) }
+                    }
+                } }
+                tbody { @for update in updates { (line(*update)) } }
+            }
+        }
+    }
+}
+
+fn line(Update { figures, at, .. }: Update<'_>) -> Markup {
+    html! {
+        tr {
+            th scope="row" { a href={ "#update-" (at) } { (name_of(figures)) } }
+            td { (format!("{:.1}", figures.instructions_mean)) }
+            td { (figures.instructions_worst) }
+            td { (figures.worst_cycles_lo) " to " (figures.worst_cycles_hi) }
+            td { (percent(figures.share_of_1ms_percent)) }
+            td { (count(figures.state_bytes as usize)) }
+        }
+    }
+}
+
+fn name_of(figures: &Figures) -> String {
+    figures.window.map_or_else(|| figures.name.clone(), |window| format!("{}, window {window}", figures.name))
+}
+
+fn section(image: &Image, Update { case, figures, at }: Update<'_>) -> Markup {
     let passes = case.passes.len().max(1) as f64;
+    let order = functions(image, case, passes);
+    let total: f64 = order.iter().map(|(_, count)| count).sum();
+    let name = |start: u32| image.functions.get(&start).map_or("", |function| function.name.as_str());
+    html! {
+        section #{ "update-" (at) } {
+            h3 { (name_of(figures)) }
+            p.fine {
+                (format!("{:.1}", figures.instructions_mean)) " instructions in the mean (" (figures.cycles_lo) " to "
+                (figures.cycles_hi) " cycles), at most " (figures.instructions_worst) ", at sample " (figures.worst_sample)
+                " of the recording"
+            }
+            div.bar aria-hidden="true" {
+                @for (part, (start, count)) in order.iter().enumerate().filter(|(_, (_, count))| count / total > MIN_SHARE) {
+                    span class=(format!("part p{}", part % 6)) style=(format!("flex-grow:{count:.3}"))
+                        title=(format!("{}: {count:.1}", name(*start))) {
+                        @if count / total > MIN_NAMED_SHARE { (short(name(*start))) }
+                    }
+                }
+            }
+            @for (part, (start, count)) in order.iter().enumerate() {
+                details {
+                    summary {
+                        span class=(format!("swatch p{}", part % 6)) {}
+                        (format!("{count:.1} ({})", percent(100.0 * count / total))) " " (name(*start))
+                    }
+                    pre { (listing(image, case, *start, passes)) }
+                }
+            }
+        }
+    }
+}
+
+/// Where each function of an update begins, with its instructions in the mean update, the largest first.
+fn functions(image: &Image, case: &Case, passes: f64) -> Vec<(u32, f64)> {
     let mut functions: BTreeMap<u32, f64> = BTreeMap::new();
     for (address, times) in &case.times {
         if let Some(function) = image.function_at(*address) {
             *functions.entry(function.start).or_default() += *times as f64 / passes;
         }
     }
-    let total: f64 = functions.values().sum();
     let mut order: Vec<(u32, f64)> = functions.into_iter().collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let name = |start: u32| image.functions.get(&start).map_or("", |function| function.name.as_str());
-    html! {
-        section {
-            h2 { (figures.name) @if let Some(window) = figures.window { ", window " (window) } }
-            p { (format!("{:.1}", figures.instructions_mean)) " instructions in the mean, at most " (figures.instructions_worst)
-                ", at sample " (figures.worst_sample) "; " (figures.cycles_lo) " to " (figures.cycles_hi) " cycles" }
-            div.bar {
-                @for (at, (start, count)) in order.iter().enumerate().filter(|(_, (_, count))| count / total > MIN_SHARE) {
-                    span class=(format!("part c{}", at % 6)) style=(format!("flex-grow:{count:.3}"))
-                        title=(format!("{}: {count:.1}", name(*start))) { (short(name(*start))) }
-                }
-            }
-            @for (start, count) in &order {
-                details {
-                    summary { (format!("{count:.1}")) " " (name(*start)) }
-                    pre { (listing(image, case, *start, passes)) }
-                }
-            }
-        }
-    }
+    order
 }
 
 /// The last part of a path, without its generics.
