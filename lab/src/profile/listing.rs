@@ -81,9 +81,14 @@ fn summary(updates: &[Update<'_>]) -> Markup {
         }
         div.wide tabindex="0" role="region" aria-label="Cost of every update" {
             table {
-                caption { "Choose an update to see where its instructions go. Cycles are those of the worst update, at least and at most." }
+                caption {
+                    "Choose an update to see where its instructions go. The millisecond and the cycles are those of the worst update. "
+                    "A bare name is the law with its interval, " code { "_alone" } " the estimate without it, " code { "_anew" }
+                    " the law summed anew over its window; " code { "identify_" } " and " code { "model_" }
+                    " take a sample through front end and law, the latter one of three parameters."
+                }
                 thead { tr {
-                    @for title in ["Update", "Instructions, mean", "worst", "Cycles", "Of 1 ms", "State, bytes"] {
+                    @for title in ["Update", "Of 1 ms", "Instructions, mean", "worst", "Cycles", "State, bytes"] {
                         th scope="col" { (title) }
                     }
                 } }
@@ -97,10 +102,10 @@ fn line(Update { figures, at, .. }: Update<'_>) -> Markup {
     html! {
         tr {
             th scope="row" { a href={ "#update-" (at) } { (name_of(figures)) } }
+            td { (percent(figures.share_of_1ms_percent)) }
             td { (format!("{:.1}", figures.instructions_mean)) }
             td { (figures.instructions_worst) }
             td { (figures.worst_cycles_lo) " to " (figures.worst_cycles_hi) }
-            td { (percent(figures.share_of_1ms_percent)) }
             td { (count(figures.state_bytes as usize)) }
         }
     }
