@@ -152,7 +152,9 @@ fn range(
 
 /// The 99th percentile of the values above zero; zero where there are none.
 fn percentile(values: impl Iterator<Item = f64>) -> f64 {
-    let mut above: Vec<f64> = values.filter(|value| *value > 0.0).collect();
+    // The room at once: a vector that grows holds what it had beside what it gets.
+    let mut above = Vec::with_capacity(values.size_hint().1.unwrap_or(0));
+    above.extend(values.filter(|value| *value > 0.0));
     if above.is_empty() {
         return 0.0;
     }
