@@ -1,6 +1,7 @@
 //! Which of the effects that were found rows confirm that no fit saw.
 
-use super::criteria::{COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER};
+use super::criteria::{COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, NOISE_POWER_KNOWN_TO};
+use super::data::{Data, is_limited_by_rounding};
 use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
 use super::lines::line_beyond;
@@ -22,14 +23,11 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
                 (less, left.energy, rms(data, &left.residual))
             })
             .collect();
-        let share = |left: f64| {
-            let taken = left - held.energy;
-            if taken > 0.0 { taken / (left - expected).max(taken) } else { 0.0 }
-        };
+        let share = |left: f64| share_taken(left, held.energy, expected);
         // A line is no part of what a law leaves.
-        let is_confirmed = |(less, left, _): &(Fit, f64, f64)| match line_beyond(&fit, less) {
+        let is_confirmed = |(less, left, without): &(Fit, f64, f64)| match line_beyond(&fit, less) {
             Some(_) => left - held.energy > LEAST_LINE_POWER * expected,
-            None => share(*left) >= LEAST_HELD_OUT_SHARE,
+            None => share(*left) >= LEAST_HELD_OUT_SHARE && !is_within_rounding(data, *without),
         };
         let needless = (0..without.len()).filter(|nth| !is_confirmed(&without[*nth]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
@@ -48,7 +46,50 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
     }
 }
 
+/// Share of the mismatch that a law takes which brings what is `left` down to `held`, all weighted squares of unseen rows: of what is left beyond
+/// those that the sensors are `expected` to leave, which is not known better than these are.
+fn share_taken(left: f64, held: f64, expected: f64) -> f64 {
+    let taken = left - held;
+    if taken > 0.0 { taken / (left - expected).max(taken).max(NOISE_POWER_KNOWN_TO * expected) } else { 0.0 }
+}
+
+/// Whether a law that leaves `without`, N or N m in root mean square, leaves no more than the encoder's rounding does where that is most of the
+/// sensors' noise: it repeats with the place, and any law of the place takes some of it.
+fn is_within_rounding(data: &Data<'_>, without: f64) -> bool {
+    let noise = data.expected_noise();
+    without < noise && is_limited_by_rounding(data.trials, noise)
+}
+
 /// Values that are fitted in `more` and not in `less`.
 fn added_values(more: &Fit, less: &Fit) -> usize {
     more.model.free_count().saturating_sub(less.model.free_count())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{FORCE_NOISE, TestContact};
+    use super::*;
+
+    /// By hand, of a thousand squares that the sensors are expected to leave.
+    #[test]
+    fn a_law_takes_its_share_of_no_smaller_mismatch_than_the_noise_is_known_to() {
+        // Of 500 beyond the noise it takes 400.
+        assert!((share_taken(1500.0, 1100.0, 1000.0) - 0.8).abs() < 1e-12);
+        // All of what is left beyond the noise, 20, is no tenth of the 320 to which that is known; nor is it where less is left than expected.
+        assert!((share_taken(1020.0, 1000.0, 1000.0) - 20.0 / 320.0).abs() < 1e-12);
+        assert!(share_taken(950.0, 930.0, 1000.0) < LEAST_HELD_OUT_SHARE.value());
+        // More than that is a law's, however little is left.
+        assert!((share_taken(1010.0, 610.0, 1000.0) - 1.0).abs() < 1e-12);
+        assert_eq!(share_taken(1000.0, 1001.0, 1000.0), 0.0);
+    }
+
+    /// An encoder whose step is worth ten times the force sensor's noise: below what both leave, nothing is told from rounding.
+    #[test]
+    fn below_the_rounding_of_an_encoder_that_is_most_of_the_noise_nothing_is_told() {
+        let trials = [TestContact::PLAIN.trial(1)];
+        let plain = Data::new(&trials);
+        assert!(!is_within_rounding(&plain, 0.5 * FORCE_NOISE));
+        let rounded = Data { noise: vec![vec![(10.0 * FORCE_NOISE).powi(2); trials[0].len()]], ..plain };
+        assert!(is_within_rounding(&rounded, 9.9 * FORCE_NOISE) && !is_within_rounding(&rounded, 10.1 * FORCE_NOISE));
+    }
 }

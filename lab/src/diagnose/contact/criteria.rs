@@ -31,6 +31,11 @@ thresholds! { "contact";
     /// Share of the held-out power above the noise that a named effect has to take beside the others: half of what the search asks on its
     /// own rows.
     LEAST_HELD_OUT_SHARE = 0.1, "1", chosen;
+    /// Part of the sensors' power to which that is known: they are known to some 15 % in root mean square, and 1.15 squared is 1.32. A law takes
+    /// its share of no smaller mismatch. Chosen.
+    NOISE_POWER_KNOWN_TO = 0.32, "1", chosen;
+    /// Times the force sensor's noise from which all that the sensors leave is mostly rounding of the position: twice in power. Chosen.
+    ROUNDING_LIMITS = 1.5, "1", chosen;
     /// Power of what is left over the sensors' from which something is: the sensors' own noise is known to some 15 %.
     NOTABLE_POWER = 1.32, "1", derived;
     /// Power of noise that remembers, over what its rows' differences show, from which it is believed: of white noise it is found as up to

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::criteria::ROUNDING_LIMITS;
 use super::model::ContactModel;
 use super::range::Range;
 use super::trial::ContactTrial;
@@ -21,6 +22,13 @@ pub struct Data<'a> {
 
 /// Step of a finite difference, in sizes of the value.
 const DIFFERENCE: f64 = 1e-4;
+
+/// Whether the errors of the position are worth more force in the contact of `trials` than the force sensor's noise is, where both together are
+/// expected to leave `noise`, N or N m.
+#[must_use]
+pub fn is_limited_by_rounding(trials: &[ContactTrial], noise: f64) -> bool {
+    noise > ROUNDING_LIMITS * trials.iter().map(|trial| trial.force_variance.sqrt()).fold(0.0, f64::max)
+}
 
 impl<'a> Data<'a> {
     /// `trials` whose rows are worth what the force sensor alone leaves of them.

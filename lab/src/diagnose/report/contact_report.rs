@@ -7,6 +7,7 @@ use super::correlation;
 use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
 use super::summary;
 use crate::diagnose::contact::data::Data;
+use crate::diagnose::contact::data::is_limited_by_rounding;
 use crate::diagnose::contact::held_out::rms;
 use crate::diagnose::contact::learned::LearnedCurve;
 use crate::diagnose::contact::model::index;
@@ -293,8 +294,7 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
     let mut tell = |code: &'static str, place: &str, text: &str| {
         findings.push(Finding { code, grave: false, place: place.to_owned(), text: text.to_owned() });
     };
-    let sensor = outcome.trials.iter().map(|trial| trial.force_variance.sqrt()).fold(0.0, f64::max);
-    if outcome.expected_noise > 1.5 * sensor {
+    if is_limited_by_rounding(&outcome.trials, outcome.expected_noise) {
         tell(
             "quantization_limits_residual",
             "position",
