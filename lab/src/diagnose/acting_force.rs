@@ -145,6 +145,7 @@ mod tests {
     use crate::diagnose::contact::circumstances::Circumstances;
     use crate::diagnose::contact::outcome::identify;
     use crate::diagnose::contact::testing::{FORCE_NOISE, RATE, TestContact};
+    use crate::diagnose::interval::NORMAL_97_5;
     use rand::SeedableRng as _;
     use rand_distr::{Distribution as _, Normal};
 
@@ -176,6 +177,31 @@ mod tests {
             // The level's own error is 6 mN by sqrt(q r) / 2 of the walk and the sensor's noise; the law's values add to it.
             assert!(error < 10e-3, "{error} N");
         }
+    }
+
+    /// Variances of a fit's prediction over those of the rows sum to the number of values (the leverages), whatever the law and however its values
+    /// make up for each other: here times the mean of how much wider the intervals are than the curvature has them.
+    #[test]
+    fn the_laws_deviations_make_up_the_error_of_its_force() {
+        let recordings = [1, 2].map(|seed| TestContact::PLAIN.recording(seed));
+        let trials = || [1, 2].map(|seed| TestContact::PLAIN.trial(seed)).to_vec();
+        let contact =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        let changes = deviations_of_law(&contact, &recordings);
+        assert_eq!(changes.len(), 4, "stiffness, damping, surface and the timing of the clocks");
+        let wider = |at: usize| {
+            let [low, high] = contact.intervals[at];
+            (high - low).powi(2) / (4.0 * NORMAL_97_5.powi(2) * contact.covariance[at][at])
+        };
+        let told = (0..contact.covariance.len()).filter(|at| contact.covariance[*at][*at] > 0.0);
+        let by_hand: f64 = told.map(wider).sum();
+        let leverage = |change: &Vec<Vec<f64>>| -> f64 {
+            let rows = change.iter().flatten().zip(contact.noise.iter().flatten());
+            rows.map(|(change, variance)| change * change / variance).sum()
+        };
+        let made_up: f64 = changes.iter().map(leverage).sum();
+        // The residual's power and the sensors' differ by some hundredths.
+        assert!((made_up / by_hand - 1.0).abs() < 0.1, "{made_up} {by_hand}");
     }
 
     /// The pad's own spring and damper along the encoder's positions are the truth.

@@ -32,22 +32,27 @@ pub struct Intervals {
 }
 
 impl Intervals {
-    /// Changes of the values along as many independent directions that together have the values' covariance, widened to their intervals: each
-    /// value's is that of the curvature times the square of how much wider its interval is. Empty where the covariance is not known.
+    /// Changes of the values along as many independent directions that together have the values' covariance by the curvature, times the mean of
+    /// the squares of how much wider each value's interval is. One factor for all: with one for each, values that make up for each other in what
+    /// is predicted would no longer do so. Empty where the covariance is not known.
     #[must_use]
     pub fn directions(&self, values: &[f64]) -> Vec<Vec<f64>> {
         let told: Vec<usize> = (0..self.covariance.len()).filter(|at| self.covariance[*at][*at] > 0.0).collect();
         let deviation = |at: usize| self.covariance[at][at].sqrt();
         let correlation = DMatrix::from_fn(told.len(), told.len(), |i, j| {
-            self.covariance[told[i]][told[j]] / (deviation(told[i]) * deviation(told[j]))
-                + if i == j { 1e-9 } else { 0.0 }
+            let ridge = if i == j { 1e-9 } else { 0.0 };
+            self.covariance[told[i]][told[j]] / (deviation(told[i]) * deviation(told[j])) + ridge
         });
         let Some(factors) = correlation.cholesky() else { return Vec::new() };
+        let wider = |at: &usize| {
+            let half = 0.5 * (self.ends[*at][1] - self.ends[*at][0]);
+            (half / (NORMAL_97_5 * deviation(*at))).powi(2)
+        };
+        let factor = (told.iter().map(wider).sum::<f64>() / told.len().max(1) as f64).sqrt();
         let of_direction = |direction: usize| {
             let mut change = vec![0.0; values.len()];
             for (row, &at) in told.iter().enumerate() {
-                let half = 0.5 * (self.ends[at][1] - self.ends[at][0]);
-                change[at] = factors.l()[(row, direction)] * half / NORMAL_97_5;
+                change[at] = factor * factors.l()[(row, direction)] * deviation(at);
             }
             change
         };
@@ -291,18 +296,18 @@ mod tests {
         assert!((half / (student * 3.0 * 0.7) - 1.0).abs() < 1e-3, "{half}");
     }
 
-    /// Three values, of which one was not fitted: the directions have the covariance, each value as wide as its interval.
+    /// Three values, of which one was not fitted: the directions have the covariance times 6.5, the mean of 4 and 9, where one interval is
+    /// twice and the other three times as wide as the curvature has it.
     #[test]
-    fn independent_directions_have_the_covariance_that_the_intervals_have() {
+    fn independent_directions_have_the_covariance_as_wide_as_the_intervals_are() {
         let covariance = vec![vec![4.0, 0.0, -1.2], vec![0.0; 3], vec![-1.2, 0.0, 1.0]];
-        let half = [2.0, 0.0, 3.0].map(|times: f64| times * NORMAL_97_5);
+        let half = [2.0 * 2.0, 0.0, 3.0 * 1.0].map(|deviations: f64| deviations * NORMAL_97_5);
         let ends = half.iter().map(|half| [1.0 - half, 1.0 + half]).collect();
-        let directions = Intervals { ends, covariance }.directions(&[1.0; 3]);
+        let directions = Intervals { ends, covariance: covariance.clone() }.directions(&[1.0; 3]);
         let sum = |i: usize, j: usize| directions.iter().map(|direction| direction[i] * direction[j]).sum::<f64>();
         assert_eq!(directions.len(), 2);
-        // The correlation is -1.2 / (2 x 1).
-        for (i, j, expected) in [(0, 0, 4.0), (2, 2, 9.0), (0, 2, -0.6 * 2.0 * 3.0), (1, 1, 0.0), (1, 2, 0.0)] {
-            assert!((sum(i, j) - expected).abs() < 1e-6, "{i} {j}: {}", sum(i, j));
+        for (i, j) in [(0, 0), (2, 2), (0, 2), (1, 1), (1, 2)] {
+            assert!((sum(i, j) - 6.5 * covariance[i][j]).abs() < 1e-6, "{i} {j}: {}", sum(i, j));
         }
     }
 

@@ -6,8 +6,7 @@ use super::contact_residual::contact_residual;
 use super::correlation;
 use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
 use super::summary;
-use crate::diagnose::contact::data::Data;
-use crate::diagnose::contact::data::is_limited_by_rounding;
+use crate::diagnose::contact::data::{Data, is_limited_by_rounding};
 use crate::diagnose::contact::held_out::rms;
 use crate::diagnose::contact::learned::LearnedCurve;
 use crate::diagnose::contact::model::index;
@@ -255,17 +254,19 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
     ]
 }
 
-/// The 95 % interval of the surface's place as others measure it: an encoder begins each trial anywhere within one of its steps, which moves
-/// all of its places by one error, uniform over a step. To the force of the law it is nothing: that goes by the encoder's own places.
+/// The 95 % interval of the surface's place as others measure it. To the force of the law where an encoder began is nothing: that goes by the
+/// encoder's own places.
 fn ends_of_the_surface(outcome: &Outcome) -> [f64; 2] {
-    let fitted = outcome.chosen.values[index::SURFACE];
-    let origin = |trial: &ContactTrial| trial.figures.position.resolution.powi(2) / 12.0;
-    let trials = outcome.trials.len().max(1) as f64;
-    let deviation = outcome.trials.iter().map(origin).sum::<f64>().sqrt() / trials;
-    outcome.intervals[index::SURFACE].map(|end| {
-        let half = (end - fitted).hypot(NORMAL_97_5 * deviation);
-        if end < fitted { fitted - half } else { fitted + half }
-    })
+    let steps: Vec<f64> = outcome.trials.iter().map(|trial| trial.figures.position.resolution).collect();
+    beside_the_encoders_start(outcome.chosen.values[index::SURFACE], outcome.intervals[index::SURFACE], &steps)
+}
+
+/// The `ends` of the interval of a `place` that is fitted to trials whose encoders have these `steps`, with where they began: anywhere within
+/// a step, which moves all places of a trial by one error, uniform over it.
+fn beside_the_encoders_start(place: f64, [low, high]: [f64; 2], steps: &[f64]) -> [f64; 2] {
+    let variances: f64 = steps.iter().map(|step| step * step / 12.0).sum();
+    let half = NORMAL_97_5 * variances.sqrt() / steps.len().max(1) as f64;
+    [place - (place - low).hypot(half), place + (high - place).hypot(half)]
 }
 
 /// Of the values that the report shows.
@@ -334,4 +335,20 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
         );
     }
     findings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Four trials by steps of 0.2 mm: one start is known to 0.0577 mm, the mean of four to half of it, 1.96 of which are 0.0566 mm.
+    #[test]
+    fn a_place_is_known_no_better_than_where_its_encoder_began() {
+        let start = NORMAL_97_5 * 0.2 / 12f64.sqrt() / 2.0;
+        let [low, high] = beside_the_encoders_start(3.0, [3.0, 3.0], &[0.2; 4]);
+        assert!((low - (3.0 - start)).abs() < 1e-12 && (high - (3.0 + start)).abs() < 1e-12, "{low} {high}");
+        let [low, high] = beside_the_encoders_start(3.0, [2.9, 3.2], &[0.2; 4]);
+        assert!((3.0 - low - 0.1f64.hypot(start)).abs() < 1e-12 && (high - 3.0 - 0.2f64.hypot(start)).abs() < 1e-12);
+        assert_eq!(beside_the_encoders_start(3.0, [2.9, 3.2], &[0.0; 2]), [3.0 - (3.0 - 2.9), 3.0 + (3.2 - 3.0)]);
+    }
 }
