@@ -91,9 +91,8 @@ impl Search<'_> {
         let is_free = shapes(more) > shapes(less);
         let least_part = if is_free { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
-        let takes_the_rest = !is_free
-            && worth.share > MOST_OF_THE_REST
-            && self.unexplained(less) > LEAST_PART_OF_EFFORT * self.scales.effort;
+        let takes_the_rest =
+            worth.share > MOST_OF_THE_REST && self.unexplained(less) > LEAST_PART_OF_EFFORT * self.scales.effort;
         self.explains_rows(more, less)
             && is_likelier(more, less)
             && worth.share > LEAST_SHARE
@@ -134,7 +133,8 @@ impl Search<'_> {
             for base in &beam {
                 let mut quick = self.quickly_grown(base);
                 quick.truncate(POLISHED);
-                grown.extend(quick.iter().map(|quick| self.without_idle_friction(self.polished(quick))));
+                let full = quick.iter().map(|quick| self.without_idle_friction(self.polished(quick)));
+                grown.extend(full.map(|fit| self.within_ends(fit, base)));
             }
             let rigid = beam.iter().find(|fit| !fit.model.has_link()).filter(|_| !best.model.has_link());
             if let Some(rigid) = rigid
@@ -145,7 +145,7 @@ impl Search<'_> {
                 link_searches += 1;
                 let found = links::found(&self.data, rigid, &self.disturbance(rigid), &self.sides);
                 let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
-                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest))));
+                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest), rigid)));
             }
             grown.retain(|fit| !is_at_end(fit));
             let grown = distinct(grown);
@@ -263,12 +263,14 @@ impl Search<'_> {
         fit
     }
 
-    /// `fit`, where a link shows that another term was one too many, with the simpler law in its place: a weak link makes Stribeck friction
-    /// of Coulomb friction.
-    fn within_ends(&self, fit: Fit) -> Fit {
+    /// `fit`, where what was added to `base` shows that a term of that was one too many, with the simpler law in its place: a weak link, or
+    /// a cogging, makes Stribeck friction of Coulomb friction.
+    fn within_ends(&self, fit: Fit, base: &Fit) -> Fit {
         let is_at_end = |at: &usize| {
             let term = &fit.model.terms[*at];
-            !term.is_link() && term.is_at_end(&fit.values[fit.model.values_of(*at)], &fit.model.scales)
+            !term.is_link()
+                && base.model.terms.contains(term)
+                && term.is_at_end(&fit.values[fit.model.values_of(*at)], &fit.model.scales)
         };
         let Some(at) = (0..fit.model.terms.len()).find(is_at_end) else { return fit };
         let simpler = simpler(&fit, at).into_iter().next();
