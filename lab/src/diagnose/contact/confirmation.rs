@@ -1,10 +1,13 @@
-//! Which of the effects that were found rows confirm that no fit saw.
+//! Which of the effects that were found rows confirm that no fit saw, and the recordings tell from none.
 
-use super::criteria::{COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, NOISE_POWER_KNOWN_TO};
+use super::criteria::{COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_TOLD_SHARE, NOISE_POWER_KNOWN_TO};
 use super::data::{Data, is_limited_by_rounding};
 use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
+use super::interval::intervals;
 use super::lines::line_beyond;
+use super::model::index;
+use super::rest::Rest;
 use super::search::Search;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
@@ -34,6 +37,14 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
             fit = without[nth].0.clone();
             continue;
         }
+        // Beside others alone: what stands for a mismatch by itself is told by the likelihood.
+        let is_little = |nth: &usize| without.len() > 1 && share(without[*nth].1) < LEAST_TOLD_SHARE;
+        let mut little: Vec<usize> = (0..without.len()).filter(is_little).collect();
+        little.sort_by(|a, b| without[*a].1.total_cmp(&without[*b].1));
+        if let Some(nth) = undetermined(search, &fit, little.into_iter().map(|nth| first + nth)) {
+            fit = without[nth - first].0.clone();
+            continue;
+        }
         let named = without.iter().enumerate().map(|(nth, (less, left, without))| NamedTerm {
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
@@ -44,6 +55,21 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
         let named = named.collect();
         return (fit, held, named);
     }
+}
+
+/// The first of the `terms` of `fit` of which each size, the value without which it is not there, has a 95 % interval that holds zero: beside
+/// the others the recordings do not determine it (A. Wald, *Trans. Am. Math. Soc.* 54, 1943, 426), however much likelier it makes them.
+fn undetermined(search: &Search<'_>, fit: &Fit, terms: impl Iterator<Item = usize>) -> Option<usize> {
+    let mut terms = terms.peekable();
+    terms.peek()?;
+    let data = &search.data;
+    let ends = intervals(data, fit, &Rest::of(data, fit)).ends;
+    let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
+    let excitation = fit.model.scales.excitation(data.trials, stiffness, surface, fit.model.bilateral);
+    terms.find(|&at| {
+        let sizes = fit.model.sizes_of(at, &excitation);
+        !sizes.is_empty() && sizes.iter().all(|size| ends[*size][0] <= 0.0 && ends[*size][1] >= 0.0)
+    })
 }
 
 /// Share of the mismatch that a law takes which brings what is `left` down to `held`, all weighted squares of unseen rows: of what is left beyond
@@ -67,8 +93,12 @@ fn added_values(more: &Fit, less: &Fit) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::circumstances::Circumstances;
+    use super::super::fit::Effort;
+    use super::super::nominal::nominal_fit;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
+    use crate::diagnose::term::Term;
 
     /// By hand, of a thousand squares that the sensors are expected to leave.
     #[test]
@@ -91,5 +121,23 @@ mod tests {
         assert!(!is_within_rounding(&plain, 0.5 * FORCE_NOISE));
         let rounded = Data { noise: vec![vec![(10.0 * FORCE_NOISE).powi(2); trials[0].len()]], ..plain };
         assert!(is_within_rounding(&rounded, 9.9 * FORCE_NOISE) && !is_within_rounding(&rounded, 10.1 * FORCE_NOISE));
+    }
+
+    /// A memory with a bias beside it that is there or is not.
+    #[test]
+    fn an_effect_whose_size_may_be_nothing_is_not_determined() {
+        let undetermined_beside = |zero: f64| {
+            let trials = [1, 2].map(|seed| TestContact { branch: 60.0, zero, ..TestContact::PLAIN }.trial(seed));
+            let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+            let term = |name: &str| Term { effect: crate::effects::find(name).unwrap(), form: 0 };
+            let model = nominal.model.with(term("stress_relaxation")).with(term("force_bias"));
+            let start: Vec<f64> = nominal.values.iter().copied().chain([60.0, 0.4, 0.01]).collect();
+            let [data, coarse] = [(), ()].map(|()| Data::new(&trials).weighed(&nominal));
+            let fit = data.fit(&model, &start, Effort::FULL);
+            let search =
+                Search { nominal: data.again(&nominal), data, coarse, circumstances: Circumstances::default() };
+            undetermined(&search, &fit, 0..2)
+        };
+        assert_eq!([0.0, 0.4].map(undetermined_beside), [Some(1), None]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::scales::Scales;
 use crate::diagnose::term::Term;
-use crate::effects::Limit;
+use crate::effects::{ExcitationStats, Limit};
 
 /// Places of the nominal values.
 pub mod index {
@@ -71,6 +71,16 @@ impl ContactModel {
     #[must_use]
     pub fn first_value_of(&self, at: usize) -> usize {
         self.nominal_count() + self.terms[..at].iter().map(|term| self.count_of(term)).sum::<usize>()
+    }
+
+    /// Places of the values of term `at` that its law is linear in, all zero where it is not there; none where its form has no such.
+    #[must_use]
+    pub fn sizes_of(&self, at: usize, excitation: &ExcitationStats) -> Vec<usize> {
+        let Term { effect, form } = self.terms[at];
+        let Some(start) = effect.starts(form, excitation).into_iter().next() else { return Vec::new() };
+        let (first, own) = (self.first_value_of(at), self.terms[at].all_parameters(self.trials));
+        let is_size = |name: &str| start.linear_parameters.iter().any(|size| own[*size].name == name);
+        (0..own.len()).filter(|nth| is_size(own[*nth].name)).map(|nth| first + nth).collect()
     }
 
     /// Values of `term`.

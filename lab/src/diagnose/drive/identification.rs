@@ -352,10 +352,20 @@ mod tests {
 
     #[test]
     fn friction_by_the_root_of_the_speed_stands_for_itself() {
-        let outcome = identified(&TestDrive { root: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 34);
+        let outcome = identified(&TestDrive { sublinear: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 34);
         assert_eq!(outcome.chosen.model.names(), ["sublinear_friction"]);
         let own = outcome.chosen.model.values_of(0);
         assert!((outcome.chosen.values[own.start + 1] - 0.5).abs() < 0.03, "{:?}", outcome.chosen.values);
+    }
+
+    /// Dry friction takes all of it but a fifth, and the exponent nearly all of that.
+    #[test]
+    fn friction_that_grows_slowly_with_the_speed_is_no_dry_friction() {
+        let grease = TestDrive { sublinear: 0.4, exponent: 0.3, ..TestDrive::PLAIN };
+        let outcome = identified(&grease, 0.75, 5.0, 35);
+        assert_eq!(outcome.chosen.model.names(), ["sublinear_friction"]);
+        let exponent = outcome.chosen.values[outcome.chosen.model.values_of(0).start + 1];
+        assert!((exponent - 0.3).abs() < 0.03, "{exponent}");
     }
 
     #[test]

@@ -327,3 +327,49 @@ fn distinct(mut fits: Vec<Fit>) -> Vec<Fit> {
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::levenberg_marquardt::Ended;
+    use super::super::noise::Noise;
+    use super::super::testing::{SCALES, TestDrive};
+    use super::*;
+
+    /// Dry friction with a ripple along the way: alone it looks larger when creeping, beside the ripple it does not.
+    #[test]
+    fn a_refinement_that_ends_where_its_search_did_goes_when_another_term_comes() {
+        let drive = TestDrive { coulomb: 0.4, ripple: 0.3, ..TestDrive::PLAIN };
+        let trials = [drive.trial(4.0, 5)];
+        let data = Data { trials: &trials, least_encoder_variance: 0.3 * drive.encoder.powi(2) };
+        let fit = |terms: Vec<Term>, own: &[f64]| Fit {
+            model: Model { terms, scales: SCALES },
+            values: [&[0.8, 4.0, 0.0], own].concat(),
+            noise: Noise { ln_disturbance: -8.0, ln_encoder: drive.encoder.powi(2).ln() },
+            log_likelihood: 0.0,
+            ended: Ended::Converged,
+        };
+        let wavenumber = std::f64::consts::TAU / 5e-3;
+        let creeping = fit(vec![Term::Stribeck], &[0.4, 0.2, 0.01]);
+        let search = Search {
+            data,
+            scales: SCALES,
+            nominal: fit(vec![], &[]),
+            band_hz: 20.0,
+            sides: Vec::new(),
+            is_asked: false,
+        };
+        let both = fit(vec![Term::Stribeck, Term::Cogging], &[0.4, 0.0, 0.01, 0.3, 0.0, wavenumber]);
+        let simpler = search.within_ends(both, &creeping);
+        assert_eq!(simpler.model.terms, [Term::Coulomb, Term::Cogging]);
+        // Four seconds tell the level and the ripple to some hundredths.
+        assert!(
+            (simpler.values[3] - 0.4).abs() < 0.02 && (simpler.values[4] - 0.3).abs() < 0.02,
+            "{:?}",
+            simpler.values
+        );
+        // A new term that ends there is not had in another form: it is none.
+        let new = fit(vec![Term::Cogging, Term::Stribeck], &[0.3, 0.0, wavenumber, 0.4, 0.0, 0.01]);
+        let beside = fit(vec![Term::Cogging], &[0.3, 0.0, wavenumber]);
+        assert_eq!(search.within_ends(new.clone(), &beside).model, new.model);
+    }
+}

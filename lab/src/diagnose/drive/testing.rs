@@ -40,8 +40,12 @@ pub struct TestDrive {
     pub coulomb: f64,
     /// m, length over which dry friction builds up after a turn (Dahl's); zero: at once.
     pub presliding: f64,
-    /// N, friction that grows with the root of the speed, at 0.1 m/s.
-    pub root: f64,
+    /// N, friction that grows with a power of the speed, at 0.1 m/s.
+    pub sublinear: f64,
+    /// Exponent of that power.
+    pub exponent: f64,
+    /// N, ripple along the way, at a pitch of 5 mm.
+    pub ripple: f64,
     /// N, constant load.
     pub load: f64,
     /// N^2 s, density of a white force.
@@ -80,7 +84,9 @@ impl TestDrive {
         viscous: 4.0,
         coulomb: 0.0,
         presliding: 0.0,
-        root: 0.0,
+        sublinear: 0.0,
+        exponent: 0.5,
+        ripple: 0.0,
         load: 0.0,
         disturbance: 0.0,
         encoder: 5e-6,
@@ -134,8 +140,9 @@ impl TestDrive {
                     load_v += step * (passed - on_load * load_v) / (link.load_share * self.mass);
                     load_x += step * load_v;
                 }
-                let root = self.root * v.signum() * (v.abs() / 0.1).sqrt();
-                let dry = root + bristle;
+                let sublinear = self.sublinear * v.signum() * (v.abs() / 0.1).powf(self.exponent);
+                let ripple = self.ripple * (std::f64::consts::TAU * x / 5e-3).sin();
+                let dry = sublinear + bristle + ripple;
                 let free =
                     v + step * (drives - passed - dry - (self.viscous - on_load) * v - self.load + white) / motor;
                 let at_once = if self.presliding > 0.0 { 0.0 } else { self.coulomb };
