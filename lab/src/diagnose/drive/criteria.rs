@@ -16,6 +16,9 @@ thresholds! { "drive";
     /// Comparisons of a larger model with a smaller one that a search makes, rounded up to a number that all recordings share: some fifteen
     /// terms for each of four places. Levels of tests are multiplied by it (Bonferroni).
     COMPARISONS = 60.0, "count", derived;
+    /// Part of the power of the noise that is recorded with an effort to which that is known: 20 % in root mean square, and 1.2 squared is 1.44.
+    /// Derived from what is asked of the expected noise.
+    NOISE_POWER_KNOWN_TO = 0.44, "1", derived;
     /// Share of the unexplained power that a term has to take: a quarter, 13 % of its root mean square. Chosen: textbook laws differ
     /// from real friction by less, and at a fifth a drive with nothing missing was alarmed.
     LEAST_SHARE = 0.25, "1", chosen;

@@ -4,6 +4,7 @@ use super::candidates::{belongs, idle_friction, is_likelier, one_body, simpler, 
 use super::criteria::{
     BLOCK_ROWS, BLOCK_S, LEAST_FREE_SHAPE_PART, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_EFFORT,
     LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, MOST_LEFT_OF_MOVED, MOST_OF_THE_REST, NEGLIGIBLE_PART,
+    NOISE_POWER_KNOWN_TO,
 };
 use super::filter::innovations;
 use super::fit::{Effort, Fit, fit};
@@ -11,8 +12,10 @@ use super::law::Side;
 use super::likelihood::Data;
 use super::links;
 use super::model::Model;
+use super::noise::robust_white_variance;
 use super::scales::Scales;
 use super::term::Term;
+use super::trial::DriveTrial;
 use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
@@ -78,10 +81,17 @@ impl Search<'_> {
         let block = ((BLOCK_S / self.scales.period_s) as usize).max(BLOCK_ROWS);
         let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
         Worth {
-            share: taken / power(less).max(f64::MIN_POSITIVE),
+            share: share_taken(power(less), power(more), 2.0 * self.effort_noise_density() * self.band_hz),
             part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),
             throughout: vuong(&rows[0], &rows[1], block).max(clarke(&rows[0], &rows[1], block)),
         }
+    }
+
+    /// Density of the white noise that is recorded with the effort, N^2 s: at the most, as a controller may command what looks like it.
+    #[must_use]
+    pub fn effort_noise_density(&self) -> f64 {
+        let of = |trial: &DriveTrial| robust_white_variance(&trial.effort) * self.scales.period_s;
+        self.data.trials.iter().map(of).fold(0.0, f64::max)
     }
 
     /// Whether `more` is worth its terms.
@@ -295,6 +305,15 @@ impl Search<'_> {
     }
 }
 
+/// Share of the mismatch that a law takes which brings what is `left` down to `held`, of which `noise` at the most is the recorded effort's own:
+/// of what is left beyond that noise, which is not known better than [`NOISE_POWER_KNOWN_TO`].
+#[must_use]
+pub fn share_taken(left: f64, held: f64, noise: f64) -> f64 {
+    let taken = left - held;
+    let noise = noise.min(held);
+    if taken > 0.0 { taken / (left - noise).max(taken).max(NOISE_POWER_KNOWN_TO * noise) } else { 0.0 }
+}
+
 fn is_at_end(fit: &Fit) -> bool {
     fit.model.is_at_end(&fit.values)
 }
@@ -371,5 +390,36 @@ mod tests {
         let new = fit(vec![Term::Cogging, Term::Stribeck], &[0.3, 0.0, wavenumber, 0.4, 0.0, 0.01]);
         let beside = fit(vec![Term::Cogging], &[0.3, 0.0, wavenumber]);
         assert_eq!(search.within_ends(new.clone(), &beside).model, new.model);
+    }
+
+    /// By hand, in squares of one unit.
+    #[test]
+    fn a_term_takes_its_share_of_what_is_left_beyond_the_noise_of_the_effort() {
+        // Of 50 beyond a noise of 100 it takes 40; with no noise it would be 40 of 150.
+        assert!((share_taken(150.0, 110.0, 100.0) - 40.0 / 50.0).abs() < 1e-12);
+        assert!((share_taken(150.0, 110.0, 0.0) - 40.0 / 150.0).abs() < 1e-12);
+        // The noise is not known better than 44 of it.
+        assert!((share_taken(110.0, 101.0, 100.0) - 9.0 / 44.0).abs() < 1e-12);
+        // What the controller commands moves the drive and is not left: of the noise no more counts than what the larger law leaves.
+        assert!((share_taken(12.0, 10.0, 1000.0) - 2.0 / 4.4).abs() < 1e-12);
+        assert_eq!(share_taken(10.0, 11.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn the_noise_of_the_recorded_effort_has_its_density() {
+        let drive = TestDrive { effort_noise: 0.3, ..TestDrive::PLAIN };
+        let trials = [drive.trial(4.0, 7)];
+        let nominal = Fit {
+            model: Model { terms: Vec::new(), scales: SCALES },
+            values: vec![0.8, 4.0, 0.0],
+            noise: Noise { ln_disturbance: 0.0, ln_encoder: 0.0 },
+            log_likelihood: 0.0,
+            ended: Ended::Converged,
+        };
+        let data = Data { trials: &trials, least_encoder_variance: 0.0 };
+        let search = Search { data, scales: SCALES, nominal, band_hz: 20.0, sides: Vec::new(), is_asked: false };
+        // A median of 4000 squares that overlap: some hundredths.
+        let density = search.effort_noise_density();
+        assert!((density / (0.3f64.powi(2) * 1e-3) - 1.0).abs() < 0.1, "{density}");
     }
 }

@@ -6,7 +6,7 @@ use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::{Uncertainty, intervals};
 use super::noise::Noise;
-use super::selection::Search;
+use super::selection::{Search, share_taken};
 use super::term::Term;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
@@ -38,7 +38,8 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
                 (less, left)
             })
             .collect();
-        let share = |left: &HeldOut| 1.0 - held.density / left.density.max(f64::MIN_POSITIVE);
+        let noise = search.effort_noise_density();
+        let share = |left: &HeldOut| share_taken(left.density, held.density, noise);
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
         let carries =
             |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
