@@ -42,6 +42,7 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         nominal: search.nominal.clone(),
         outside_forces: Vec::new(),
         coarser_step: None,
+        beyond_the_sensor: None,
         chosen: fit,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::alternatives::Alternative;
 use super::fit::Fit;
+use super::model::index;
 use super::outside_force::Stretch;
 use super::trial::DriveTrial;
 use crate::diagnose::evidence::NamedTerm;
@@ -35,9 +36,23 @@ pub struct Outcome {
     pub outside_forces: Vec<Stretch>,
     /// Step, m or rad, of the coarser encoder that it was taken for, where only the slower motion follows a law.
     pub coarser_step: Option<f64>,
+    /// Inertia beyond the force sensor, kg or kg m^2, with its 95 % interval, where the contact told it and the law does not hold it: the reading that
+    /// was taken off the effort held its inertial force, and the law's inertia is the rest.
+    pub beyond_the_sensor: Option<(f64, [f64; 2])>,
 }
 
 impl Outcome {
+    /// Inertia of all that the drive moves, kg or kg m^2, with its 95 % interval. What is beyond the force sensor is told by the force, the rest by the
+    /// effort: their errors are independent.
+    #[must_use]
+    pub fn inertia(&self) -> (f64, [f64; 2]) {
+        let (rest, ends) = (self.chosen.values[index::INERTIA], self.intervals[index::INERTIA]);
+        let Some((beyond, beyond_ends)) = self.beyond_the_sensor else { return (rest, ends) };
+        let whole = rest + beyond;
+        let [below, above] = [0, 1].map(|end| (ends[end] - rest).hypot(beyond_ends[end] - beyond));
+        (whole, [whole - below, whole + above])
+    }
+
     /// Takes the names off the drive's list that the contact tells already; where none is left, nothing is missing in the drive.
     pub fn leave_to_the_contact(&mut self, is_told: impl Fn(&str) -> bool) {
         let model = &self.chosen.model;

@@ -185,7 +185,7 @@ pub fn refined(given: &Rig, base: &Rig, outcome: &Outcome) -> Rig {
     let is_wrong = outcome.verdict != Verdict::NoMismatch;
     let mut rig = base.clone();
     rig.drive = given.drive.map(|drive| Drive {
-        inertia: if is_wrong { values[index::INERTIA] } else { drive.inertia },
+        inertia: if is_wrong { outcome.inertia().0 } else { drive.inertia },
         viscous: if is_wrong { values[index::VISCOUS] } else { drive.viscous },
         encoder: outcome.chosen.model.terms.iter().find_map(Term::encoder).or(drive.encoder),
         load_scale: drive.load_scale
@@ -253,17 +253,18 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
     let Some(drive) = rig.drive else { return Vec::new() };
     let inertia = if c == Coordinate::Rotary { "inertia" } else { "mass" };
     let (values, ends) = (&outcome.chosen.values, &outcome.intervals);
-    let row = |name: &str, unit: &str, given: f64, at: usize| Nominal {
+    let row = |name: &str, unit: &str, given: f64, (fitted, ends): (f64, [f64; 2])| Nominal {
         name: format!("{name}_{}", slug(unit)),
         unit: unit.to_owned(),
         given,
-        fitted: values[at],
-        ci95: channel::told(values[at], ends[at]),
+        fitted,
+        ci95: channel::told(fitted, ends),
     };
+    let value = |at: usize| (values[at], ends[at]);
     let mut rows = vec![
-        row(inertia, c.inertia_unit(), drive.inertia, index::INERTIA),
-        row("viscous", c.damping_unit(), drive.viscous, index::VISCOUS),
-        row("effort_delay", "s", 0.0, index::DELAY),
+        row(inertia, c.inertia_unit(), drive.inertia, outcome.inertia()),
+        row("viscous", c.damping_unit(), drive.viscous, value(index::VISCOUS)),
+        row("effort_delay", "s", 0.0, value(index::DELAY)),
     ];
     rows.extend(outcome.chosen.model.load_scale().map(|at| Nominal {
         name: "load_scale".to_owned(),
