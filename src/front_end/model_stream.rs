@@ -4,7 +4,7 @@ use crate::contact::{Observation, Sample};
 use crate::error::ConfigError;
 use crate::front_end::contact_model::{ContactModel, MAX_PARAMETERS};
 use crate::front_end::low_pass::{LowPass, LowPassState};
-use crate::front_end::samples::{FrontEnd, FrontEndConfig, FrontEndState, Rejection};
+use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Rejection};
 use crate::math::larger;
 
 /// One row, in internal units.
