@@ -21,6 +21,7 @@ mod least_mean_fourth;
 mod least_mean_square;
 mod least_squares;
 mod second_order;
+mod second_use;
 mod solution;
 mod window_sums;
 

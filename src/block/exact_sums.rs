@@ -13,6 +13,7 @@ use crate::block::centre::{is_moderate, suits_better};
 use crate::block::config::BlockConfig;
 use crate::block::integer_sums::{ExactRun, Scale, bits_for};
 use crate::block::second_order::{Moments, SecondOrderSums};
+use crate::block::second_use::SecondUse;
 use crate::block::window_sums::{CentredMoments, WindowSums};
 use crate::contact::{Impedance, Observation};
 use crate::window::Recent;
@@ -25,19 +26,6 @@ const CHECK_INTERVAL: u16 = 16;
 
 /// Updates until the first check: so many samples tell two unknowns.
 const FIRST_CHECK: u16 = 8;
-
-/// What the second run of [`ExactSums`] is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum SecondUse {
-    /// Out of use.
-    #[default]
-    Unused,
-    /// Being prepared: it holds so many of the newest samples, which the first run holds as well. Once these are all, it takes the place of
-    /// the first at the next update.
-    Prepared(u16),
-    /// It holds so many of the oldest samples, which the first run does not hold.
-    Older(u16),
-}
 
 /// The sums of a window, updated sample by sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
