@@ -43,7 +43,7 @@
 //! | [`Identifier`] | front end, window and one law |
 //! | [`EstimatorBank`] | all laws side by side |
 //!
-//! SensorResolution, faults, calibration and link of a drive are in the crate `palpate-drive`.
+//! Sensors, faults, calibration and link of a drive are in the crate `palpate-drive`.
 //!
 //! Equation numbers are those of the paper that compared the laws on a one-degree-of-freedom bench.
 
