@@ -87,7 +87,8 @@ pub fn diagnose(
     // Held at one depth a memory fades and a loop does not.
     let is_one_speed = ["one_speed", "no_hold"].iter().all(|code| findings.iter().any(|finding| finding.code == *code));
     let recorded = Recorded { rig, origin, trials, figures: &figures, is_one_speed, seed, say };
-    let (channels, at_the_tool) = tool_position::told_at_the_tool(&recorded, recorded.identified()?)?;
+    let (mut channels, at_the_tool) = tool_position::told_at_the_tool(&recorded, recorded.identified()?)?;
+    channels.tell_what_is_beyond_the_sensor();
     let felt = channels.finding();
     let Channels { mut contact, drive, .. } = channels;
     if let Some(contact) = &mut contact {

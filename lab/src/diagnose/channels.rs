@@ -49,6 +49,15 @@ pub struct Channels {
 }
 
 impl Channels {
+    /// Tells the drive the inertia beyond the force sensor that the contact names, unless the drive's law holds it.
+    pub fn tell_what_is_beyond_the_sensor(&mut self) {
+        let (Some(contact), Some(drive)) = (&self.contact, &mut self.drive) else { return };
+        let model = &contact.chosen.model;
+        let named = contact.named.iter().find(|named| model.terms[named.at].name() == "tool_inertia");
+        let at = named.filter(|_| !drive.chosen.model.has("tool_inertia")).map(|named| model.first_value_of(named.at));
+        drive.beyond_the_sensor = at.map(|at| (contact.chosen.values[at], contact.intervals[at]));
+    }
+
     /// That the drive speaks against effects of the force sensor.
     #[must_use]
     pub fn finding(&self) -> Option<Finding> {
@@ -95,8 +104,6 @@ impl Recorded<'_> {
         }
         if let (Some(contact), Some(drive)) = (&channels.contact, &mut channels.drive) {
             drive.leave_to_the_contact(|name| is_told(contact, name));
-            let is_in_law = drive.chosen.model.has("tool_inertia");
-            drive.beyond_the_sensor = beyond_the_sensor(contact).filter(|_| !is_in_law);
         }
         Ok(channels)
     }
@@ -170,14 +177,6 @@ fn contact_rig(rig: &Rig, sensors: &[NamedEffect]) -> Rig {
     contact.effects.retain(|table| effects::find(&table.name).is_none_or(|e| e.spec().place != Place::Drive));
     contact.effects.extend(sensors.iter().map(|effect| drive_report::table(effect, rig.coordinate)));
     contact
-}
-
-/// Inertia beyond the force sensor, kg or kg m^2, that the contact names, with its 95 % interval.
-fn beyond_the_sensor(contact: &contact::outcome::Outcome) -> Option<(f64, [f64; 2])> {
-    let model = &contact.chosen.model;
-    let named = contact.named.iter().find(|named| model.terms[named.at].name() == "tool_inertia")?;
-    let at = model.first_value_of(named.at);
-    Some((contact.chosen.values[at], contact.intervals[at]))
 }
 
 /// Whether the contact names `name`, or what a slow sensor and a late one have in common.

@@ -5,8 +5,8 @@
 pub struct NamedTerm {
     /// Its place among the terms of the model.
     pub at: usize,
-    /// Share of what is missing on held-out rows that it takes, beside the other terms: of the power above the noise in a contact, of all
-    /// power in a drive.
+    /// Share of what is missing on held-out rows that it takes, beside the other terms: of the power above the noise, in a drive above
+    /// that of the recorded effort.
     pub held_out_share: f64,
     /// Likelihood-ratio test of it, Bonferroni over all terms tried.
     pub p_value: f64,

@@ -108,21 +108,24 @@ fn a_mass_beyond_the_force_sensor_through_a_coarser_encoder() {
     finds(&Case::led(BENCH, BEYOND), "tool_inertia", &[("beyond_mass", 0.1)]);
 }
 
-/// The drive bears its whole mass, whatever part of it hangs beyond the sensor; by effort and force alone that part is missing.
+/// The drive bears its whole mass, whatever part of it hangs beyond the sensor; by effort and force alone that part is missing. A file that states
+/// the drive without it, 0.35 kg, seems to be right, and one that states the whole seems to be wrong.
 #[test]
 fn a_mass_beyond_the_force_sensor_is_part_of_what_the_drive_moves() {
-    let case = Case::new(&driven_into_the_pad(0), driven_into_the_pad, BEYOND);
-    let answer = case.diagnose(&["--model", "improved.toml"]);
-    told(&answer, "tool_inertia", &[("beyond_mass", 0.1)]);
-    let nominal = answer["nominal"].as_array().unwrap();
-    let mass = nominal.iter().find(|row| row["name"] == "mass_kg").unwrap();
-    // Without that part it would be 0.35 kg. Both masses come out some thousandths too small through an encoder of 5 um.
-    let fitted = mass["fitted"].as_f64().unwrap();
-    assert!((fitted / 0.45 - 1.0).abs() < 5e-3, "{mass}");
-    let improved = std::fs::read_to_string(case.path("improved.toml")).unwrap();
-    let written = improved.lines().find_map(|line| line.strip_prefix("mass_kg = ")).unwrap();
-    let written: f64 = written.split_whitespace().next().unwrap().parse().unwrap();
-    assert!((written / 0.45 - 1.0).abs() < 5e-3, "{written}");
+    for given in ["0.45", "0.35"] {
+        let known = driven_into_the_pad(0).replace("mass_kg = 0.45", &format!("mass_kg = {given}"));
+        let case = Case::new(&known, driven_into_the_pad, BEYOND);
+        let answer = case.diagnose(&["--model", "improved.toml"]);
+        told(&answer, "tool_inertia", &[("beyond_mass", 0.1)]);
+        let nominal = answer["nominal"].as_array().unwrap();
+        let mass = nominal.iter().find(|row| row["name"] == "mass_kg").unwrap();
+        // Both masses come out some thousandths too small through an encoder of 5 um.
+        let is_whole = |mass: f64| (mass / 0.45 - 1.0).abs() < 5e-3;
+        assert!(is_whole(mass["fitted"].as_f64().unwrap()), "{mass}");
+        let improved = std::fs::read_to_string(case.path("improved.toml")).unwrap();
+        let written = improved.lines().find_map(|line| line.strip_prefix("mass_kg = ")).unwrap();
+        assert!(is_whole(written.split_whitespace().next().unwrap().parse().unwrap()), "{written}");
+    }
 }
 
 #[test]

@@ -57,8 +57,9 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
     }
 }
 
-/// The first of the `terms` of `fit` of which each size, the value without which it is not there, has a 95 % interval that holds zero: beside
-/// the others the recordings do not determine it (A. Wald, *Trans. Am. Math. Soc.* 54, 1943, 426), however much likelier it makes them.
+/// The first of the `terms` of `fit` with one size, of either sign, whose 95 % interval holds zero: beside the others the recordings do not
+/// determine it (A. Wald, *Trans. Am. Math. Soc.* 54, 1943, 426), however much likelier it makes them. A size that is known by factors has an
+/// interval that holds no zero, and several can be certain together where each for itself is not.
 fn undetermined(search: &Search<'_>, fit: &Fit, terms: impl Iterator<Item = usize>) -> Option<usize> {
     let mut terms = terms.peekable();
     terms.peek()?;
@@ -67,8 +68,8 @@ fn undetermined(search: &Search<'_>, fit: &Fit, terms: impl Iterator<Item = usiz
     let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
     let excitation = fit.model.scales.excitation(data.trials, stiffness, surface, fit.model.bilateral);
     terms.find(|&at| {
-        let sizes = fit.model.sizes_of(at, &excitation);
-        !sizes.is_empty() && sizes.iter().all(|size| ends[*size][0] <= 0.0 && ends[*size][1] >= 0.0)
+        let size = fit.model.size_of(at, &excitation);
+        size.is_some_and(|size| ends[size][0] <= 0.0 && ends[size][1] >= 0.0)
     })
 }
 

@@ -73,14 +73,16 @@ impl ContactModel {
         self.nominal_count() + self.terms[..at].iter().map(|term| self.count_of(term)).sum::<usize>()
     }
 
-    /// Places of the values of term `at` that its law is linear in, all zero where it is not there; none where its form has no such.
+    /// The place of the value of term `at` that alone its law is linear in, zero where it is not there; `None` where its form has no such value, or
+    /// several.
     #[must_use]
-    pub fn sizes_of(&self, at: usize, excitation: &ExcitationStats) -> Vec<usize> {
+    pub fn size_of(&self, at: usize, excitation: &ExcitationStats) -> Option<usize> {
         let Term { effect, form } = self.terms[at];
-        let Some(start) = effect.starts(form, excitation).into_iter().next() else { return Vec::new() };
-        let (first, own) = (self.first_value_of(at), self.terms[at].all_parameters(self.trials));
-        let is_size = |name: &str| start.linear_parameters.iter().any(|size| own[*size].name == name);
-        (0..own.len()).filter(|nth| is_size(own[*nth].name)).map(|nth| first + nth).collect()
+        let start = effect.starts(form, excitation).into_iter().next()?;
+        let [size] = start.linear_parameters[..] else { return None };
+        let own = self.terms[at].all_parameters(self.trials);
+        let is_alone = own.iter().filter(|parameter| parameter.name == own[size].name).count() == 1;
+        is_alone.then(|| self.first_value_of(at) + size)
     }
 
     /// Values of `term`.

@@ -16,8 +16,8 @@ thresholds! { "drive";
     /// Comparisons of a larger model with a smaller one that a search makes, rounded up to a number that all recordings share: some fifteen
     /// terms for each of four places. Levels of tests are multiplied by it (Bonferroni).
     COMPARISONS = 60.0, "count", derived;
-    /// Part of the power of the noise that is recorded with an effort to which that is known: 20 % in root mean square, and 1.2 squared is 1.44.
-    /// Derived from what is asked of the expected noise.
+    /// Part of the power of the noise that is recorded with an effort to which that noise is known: to 20 % in root mean square, 1.2 squared less one. 20 % is
+    /// what is asked of an expected noise.
     NOISE_POWER_KNOWN_TO = 0.44, "1", derived;
     /// Share of the unexplained power that a term has to take: a quarter, 13 % of its root mean square. Chosen: textbook laws differ
     /// from real friction by less, and at a fifth a drive with nothing missing was alarmed.
@@ -27,7 +27,7 @@ thresholds! { "drive";
     LEAST_PART_OF_ALL = 0.1, "1", chosen;
     /// Share of the unexplained power that makes a term worth it however little that was of all: three quarters, half in root mean square. A
     /// link that swings leaves so much that friction beside it, which takes all of the rest, is less than a tenth; grease that thins under
-    /// shear is dry friction but for a fifth, of which an exponent takes nine tenths. On real drives such a part was 0.64 at the most. Chosen.
+    /// shear is dry friction but for a fifth, of which an exponent takes nine tenths. Chosen.
     MOST_OF_THE_REST = 0.75, "1", chosen;
     /// As [`LEAST_PART_OF_ALL`] for a term whose shape is free, as the pitch of a ripple or the exponent of sub-linear friction: it follows any mismatch
     /// of such a kind. Chosen, on the wrist of an arm whose other axes leave a wavy load of 0.16, on a ball screw whose published law

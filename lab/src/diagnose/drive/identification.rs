@@ -140,7 +140,7 @@ fn search_from<'a>(data: Data<'a>, rig: &NominalDrive, nominal: Fit) -> Search<'
     let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
     let band_hz = crossing.clamp(LOWEST_BAND_HZ.value().min(0.1 / scales.period_s), 0.4 / scales.period_s);
     let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
-    Search { data, scales, nominal, band_hz, sides, is_asked: false }
+    Search { data, scales, nominal, band_hz, sides, is_asked: false, effort_noise_density: data.effort_noise_density() }
 }
 
 #[cfg(test)]
@@ -215,6 +215,25 @@ mod tests {
         assert_eq!(outcome.verdict, Verdict::NoMismatch);
         // It is there: more than encoder and force sensor leave.
         assert!(rms(&outcome.missing[1]) > 1.5 * outcome.expected_noise);
+    }
+
+    /// The same density whether the encoder's rows are thinned or not, and of two trials their mean.
+    #[test]
+    fn the_noise_of_the_recorded_effort_has_its_density() {
+        let noisy = TestDrive { effort_noise: 0.3, ..TestDrive::PLAIN }.trial(4.0, 7);
+        let position: Vec<f64> = noisy.position.clone();
+        let thinned =
+            DriveTrial::new("thinned.csv".into(), noisy.source_time.clone(), &position, noisy.effort.clone(), None, 3);
+        let density = |trials: &[DriveTrial]| Data { trials, least_encoder_variance: 0.0 }.effort_noise_density();
+        // A median of 4000 squares that overlap: some hundredths.
+        for trials in [[noisy.clone()], [thinned]] {
+            let density = density(&trials);
+            assert!((density / (0.3f64.powi(2) * 1e-3) - 1.0).abs() < 0.1, "{density}");
+        }
+        let quiet = TestDrive::PLAIN.trial(4.0, 8);
+        let [one, other, both] =
+            [vec![noisy.clone()], vec![quiet.clone()], vec![noisy, quiet]].map(|trials| density(&trials));
+        assert!((2.0 * both / (one + other) - 1.0).abs() < 1e-12, "{both} of {one} and {other}");
     }
 
     #[test]

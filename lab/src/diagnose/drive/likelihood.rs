@@ -7,7 +7,7 @@ use super::innovations::Innovations;
 use super::input::Inputs;
 use super::law::DriveLaw;
 use super::model::Model;
-use super::noise::Noise;
+use super::noise::{Noise, robust_white_variance};
 use super::trial::DriveTrial;
 
 /// The trials that a model is fitted to.
@@ -29,6 +29,15 @@ impl Data<'_> {
     pub fn unexplained_density(&self, model: &Model, noise: &Noise) -> f64 {
         let of_force = self.trials.iter().map(|trial| trial.force_density).fold(0.0, f64::max);
         noise.disturbance() + if model.has_link() { of_force } else { 0.0 }
+    }
+
+    /// Density of the white noise that is recorded with the effort, N^2 s, that of each trial counted by its rows: an effort of variance s^2 that is held
+    /// for a row of dt has s^2 dt.
+    #[must_use]
+    pub fn effort_noise_density(&self) -> f64 {
+        let of = |trial: &DriveTrial| robust_white_variance(&trial.effort) * trial.recorded_period_s();
+        let rows: f64 = self.trials.iter().map(|trial| trial.len() as f64).sum();
+        self.trials.iter().map(|trial| of(trial) * trial.len() as f64).sum::<f64>() / rows.max(1.0)
     }
 
     /// Innovations of every trial under `model`.

@@ -43,7 +43,8 @@ pub struct Outcome {
 
 impl Outcome {
     /// Inertia of all that the drive moves, kg or kg m^2, with its 95 % interval. What is beyond the force sensor is told by the force, the rest by the
-    /// effort: their errors are independent.
+    /// effort. Their errors are taken as independent; what an error of the force adds to the one it takes from the other, so that the interval is rather
+    /// too wide.
     #[must_use]
     pub fn inertia(&self) -> (f64, [f64; 2]) {
         let (rest, ends) = (self.chosen.values[index::INERTIA], self.intervals[index::INERTIA]);

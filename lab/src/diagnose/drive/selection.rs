@@ -12,10 +12,8 @@ use super::law::Side;
 use super::likelihood::Data;
 use super::links;
 use super::model::Model;
-use super::noise::robust_white_variance;
 use super::scales::Scales;
 use super::term::Term;
-use super::trial::DriveTrial;
 use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
@@ -32,6 +30,8 @@ pub struct Search<'a> {
     pub sides: Vec<Side>,
     /// Whether terms are looked for however little of the effort is unexplained.
     pub is_asked: bool,
+    /// Density of the white noise that is recorded with the effort, N^2 s.
+    pub effort_noise_density: f64,
 }
 
 /// What was chosen, and the sets that it was chosen from.
@@ -81,17 +81,10 @@ impl Search<'_> {
         let block = ((BLOCK_S / self.scales.period_s) as usize).max(BLOCK_ROWS);
         let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
         Worth {
-            share: share_taken(power(less), power(more), 2.0 * self.effort_noise_density() * self.band_hz),
+            share: share_taken(power(less), power(more), 2.0 * self.effort_noise_density * self.band_hz),
             part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),
             throughout: vuong(&rows[0], &rows[1], block).max(clarke(&rows[0], &rows[1], block)),
         }
-    }
-
-    /// Density of the white noise that is recorded with the effort, N^2 s: at the most, as a controller may command what looks like it.
-    #[must_use]
-    pub fn effort_noise_density(&self) -> f64 {
-        let of = |trial: &DriveTrial| robust_white_variance(&trial.effort) * self.scales.period_s;
-        self.data.trials.iter().map(of).fold(0.0, f64::max)
     }
 
     /// Whether `more` is worth its terms.
@@ -273,18 +266,22 @@ impl Search<'_> {
         fit
     }
 
-    /// `fit`, where what was added to `base` shows that a term of that was one too many, with the simpler law in its place: a weak link, or
-    /// a cogging, makes Stribeck friction of Coulomb friction.
-    fn within_ends(&self, fit: Fit, base: &Fit) -> Fit {
-        let is_at_end = |at: &usize| {
-            let term = &fit.model.terms[*at];
-            !term.is_link()
-                && base.model.terms.contains(term)
-                && term.is_at_end(&fit.values[fit.model.values_of(*at)], &fit.model.scales)
-        };
-        let Some(at) = (0..fit.model.terms.len()).find(is_at_end) else { return fit };
-        let simpler = simpler(&fit, at).into_iter().next();
-        simpler.map_or(fit.clone(), |(model, values)| self.polished(&Fit { model, values, ..fit }))
+    /// `fit`, where what was added to `base` shows that terms found with that were too many, with the simpler law in the place of each, or without it:
+    /// a weak link, or a cogging, makes Stribeck friction of Coulomb friction. The rig file's own terms stay.
+    fn within_ends(&self, mut fit: Fit, base: &Fit) -> Fit {
+        let known = self.nominal.model.terms.len();
+        loop {
+            let is_at_end = |at: &usize| {
+                let term = &fit.model.terms[*at];
+                !term.is_link()
+                    && base.model.terms.contains(term)
+                    && term.is_at_end(&fit.values[fit.model.values_of(*at)], &fit.model.scales)
+            };
+            let simpler =
+                (known..fit.model.terms.len()).find(is_at_end).and_then(|at| simpler(&fit, at).into_iter().next());
+            let Some((model, values)) = simpler else { return fit };
+            fit = self.polished(&Fit { model, values, ..fit });
+        }
     }
 
     /// `best` without the terms, or the refinements of a law, that are not worth having beside the others.
@@ -305,12 +302,13 @@ impl Search<'_> {
     }
 }
 
-/// Share of the mismatch that a law takes which brings what is `left` down to `held`, of which `noise` at the most is the recorded effort's own:
-/// of what is left beyond that noise, which is not known better than [`NOISE_POWER_KNOWN_TO`].
+/// What a law takes, `left - held`, over what is left beyond the white `noise` of the recorded effort, which is not known better than
+/// [`NOISE_POWER_KNOWN_TO`]. Where more noise was recorded than the law leaves, a controller commanded it: it moved the drive, and none of it is left.
 #[must_use]
 pub fn share_taken(left: f64, held: f64, noise: f64) -> f64 {
     let taken = left - held;
-    let noise = noise.min(held);
+    let is_commanded = noise > (1.0 + NOISE_POWER_KNOWN_TO.value()) * held;
+    let noise = if is_commanded { 0.0 } else { noise.min(held) };
     if taken > 0.0 { taken / (left - noise).max(taken).max(NOISE_POWER_KNOWN_TO * noise) } else { 0.0 }
 }
 
@@ -376,9 +374,10 @@ mod tests {
             band_hz: 20.0,
             sides: Vec::new(),
             is_asked: false,
+            effort_noise_density: 0.0,
         };
         let both = fit(vec![Term::Stribeck, Term::Cogging], &[0.4, 0.0, 0.01, 0.3, 0.0, wavenumber]);
-        let simpler = search.within_ends(both, &creeping);
+        let simpler = search.within_ends(both.clone(), &creeping);
         assert_eq!(simpler.model.terms, [Term::Coulomb, Term::Cogging]);
         // Four seconds tell the level and the ripple to some hundredths.
         assert!(
@@ -390,6 +389,9 @@ mod tests {
         let new = fit(vec![Term::Cogging, Term::Stribeck], &[0.3, 0.0, wavenumber, 0.4, 0.0, 0.01]);
         let beside = fit(vec![Term::Cogging], &[0.3, 0.0, wavenumber]);
         assert_eq!(search.within_ends(new.clone(), &beside).model, new.model);
+        // Nor is one that the rig file holds.
+        let known = Search { nominal: creeping.clone(), ..search };
+        assert_eq!(known.within_ends(both.clone(), &creeping).model, both.model);
     }
 
     /// By hand, in squares of one unit.
@@ -400,26 +402,10 @@ mod tests {
         assert!((share_taken(150.0, 110.0, 0.0) - 40.0 / 150.0).abs() < 1e-12);
         // The noise is not known better than 44 of it.
         assert!((share_taken(110.0, 101.0, 100.0) - 9.0 / 44.0).abs() < 1e-12);
-        // What the controller commands moves the drive and is not left: of the noise no more counts than what the larger law leaves.
-        assert!((share_taken(12.0, 10.0, 1000.0) - 2.0 / 4.4).abs() < 1e-12);
+        // What the controller commands moves the drive and is not left.
+        assert!((share_taken(12.0, 10.0, 1000.0) - 2.0 / 12.0).abs() < 1e-12);
+        // Of noise that is told a little too large, all that is left is noise.
+        assert!((share_taken(12.0, 10.0, 14.0) - 2.0 / 4.4).abs() < 1e-12);
         assert_eq!(share_taken(10.0, 11.0, 0.0), 0.0);
-    }
-
-    #[test]
-    fn the_noise_of_the_recorded_effort_has_its_density() {
-        let drive = TestDrive { effort_noise: 0.3, ..TestDrive::PLAIN };
-        let trials = [drive.trial(4.0, 7)];
-        let nominal = Fit {
-            model: Model { terms: Vec::new(), scales: SCALES },
-            values: vec![0.8, 4.0, 0.0],
-            noise: Noise { ln_disturbance: 0.0, ln_encoder: 0.0 },
-            log_likelihood: 0.0,
-            ended: Ended::Converged,
-        };
-        let data = Data { trials: &trials, least_encoder_variance: 0.0 };
-        let search = Search { data, scales: SCALES, nominal, band_hz: 20.0, sides: Vec::new(), is_asked: false };
-        // A median of 4000 squares that overlap: some hundredths.
-        let density = search.effort_noise_density();
-        assert!((density / (0.3f64.powi(2) * 1e-3) - 1.0).abs() < 0.1, "{density}");
     }
 }

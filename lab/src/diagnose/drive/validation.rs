@@ -38,8 +38,7 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
                 (less, left)
             })
             .collect();
-        let noise = search.effort_noise_density();
-        let share = |left: &HeldOut| share_taken(left.density, held.density, noise);
+        let share = |left: &HeldOut| share_taken(left.density, held.density, search.effort_noise_density);
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
         let carries =
             |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");

@@ -165,8 +165,19 @@ fn residuals(outcome: &Outcome) -> Residuals {
 /// The effects of the answer, in order of evidence.
 #[must_use]
 pub fn found(outcome: &Outcome) -> Vec<NamedEffect> {
-    let terms = outcome.named.iter().filter_map(|term| named(&outcome.chosen, &outcome.intervals, term.at));
-    terms.collect()
+    outcome.named.iter().filter_map(|term| effect_at(outcome, term.at)).collect()
+}
+
+/// The effect that term `at` is. The motor's share of the inertia is of the whole, which the law may lack a part of.
+fn effect_at(outcome: &Outcome, at: usize) -> Option<NamedEffect> {
+    let mut effect = named(&outcome.chosen, &outcome.intervals, at)?;
+    let of_whole = outcome.chosen.values[index::INERTIA] / outcome.inertia().0;
+    let parameters = effect.effect.spec().forms[effect.form].parameters;
+    if let Some(share) = parameters.iter().position(|parameter| parameter.name == "motor_share") {
+        effect.values[share] *= of_whole;
+        effect.intervals[share].iter_mut().for_each(|end| *end *= of_whole);
+    }
+    Some(effect)
 }
 
 /// The table of a found effect in a rig file.
@@ -182,7 +193,8 @@ pub fn table(found: &NamedEffect, coordinate: Coordinate) -> crate::rig::Effect 
 #[must_use]
 pub fn refined(given: &Rig, base: &Rig, outcome: &Outcome) -> Rig {
     let values = &outcome.chosen.values;
-    let is_wrong = outcome.verdict != Verdict::NoMismatch;
+    // What hangs beyond the sensor is part of the mass, whether it was known to the file or not.
+    let is_wrong = outcome.verdict != Verdict::NoMismatch || outcome.beyond_the_sensor.is_some();
     let mut rig = base.clone();
     rig.drive = given.drive.map(|drive| Drive {
         inertia: if is_wrong { outcome.inertia().0 } else { drive.inertia },
@@ -192,7 +204,7 @@ pub fn refined(given: &Rig, base: &Rig, outcome: &Outcome) -> Rig {
             * outcome.chosen.model.load_scale().filter(|_| is_wrong).map_or(1.0, |at| values[at]),
     });
     let terms = (0..outcome.chosen.model.terms.len())
-        .filter_map(|at| named(&outcome.chosen, &outcome.intervals, at))
+        .filter_map(|at| effect_at(outcome, at))
         .map(|found| table(&found, given.coordinate));
     rig.effects.retain(|table| !outcome.chosen.model.has(&table.name));
     rig.effects.extend(terms);
@@ -204,7 +216,7 @@ fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, loc
         .named
         .iter()
         .filter_map(|term| {
-            let effect = named(&outcome.chosen, &outcome.intervals, term.at)?;
+            let effect = effect_at(outcome, term.at)?;
             let evidence = residuals.evidence(outcome.named.len(), term.without, term.p_value);
             Some(described(&effect, coordinate, evidence))
         })
