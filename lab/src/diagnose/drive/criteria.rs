@@ -45,10 +45,8 @@ thresholds! { "drive";
     MOST_LEFT_OF_MOVED = 0.5, "1", chosen;
     /// Part of the mismatch that may be left beside named physics before `unknown` is told beside it.
     MOST_LEFT = 0.6, "1", chosen;
-    /// Part of the effort above which a mismatch that nothing explains is called unknown, as of a contact's force. Chosen; at 0.02 grease that warms up
-    /// (0.01) and a magnet that fades (0.017) were told as nothing missing, and of 22 drives of other authors with nothing missing none leaves
-    /// [`OVER_NOISE`] times what sensors and effort show.
-    UNKNOWN_PART_OF_EFFORT = 0.005, "1", chosen;
+    /// Part of the effort above which a mismatch that nothing explains is called unknown.
+    UNKNOWN_PART_OF_EFFORT = 0.02, "1", chosen;
     /// Part of a mismatch that a free curve over position leaves of what named physics leaves, below which the names are not believed
     /// alone.
     CURVE_PART = 0.5, "1", chosen;
