@@ -9,7 +9,7 @@ use super::lines::line_beyond;
 use super::model::index;
 use super::rest::Rest;
 use super::search::Search;
-use crate::diagnose::evidence::NamedTerm;
+use crate::diagnose::evidence::{NamedTerm, share_beyond_noise};
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 
 /// The effects that unseen rows confirm, with what each takes of them.
@@ -76,8 +76,7 @@ fn undetermined(search: &Search<'_>, fit: &Fit, terms: impl Iterator<Item = usiz
 /// Share of the mismatch that a law takes which brings what is `left` down to `held`, all weighted squares of unseen rows: of what is left beyond
 /// those that the sensors are `expected` to leave, which is not known better than these are.
 fn share_taken(left: f64, held: f64, expected: f64) -> f64 {
-    let taken = left - held;
-    if taken > 0.0 { taken / (left - expected).max(taken).max(NOISE_POWER_KNOWN_TO * expected) } else { 0.0 }
+    share_beyond_noise(left, held, expected, NOISE_POWER_KNOWN_TO.value())
 }
 
 /// Whether a law that leaves `without`, N or N m in root mean square, leaves no more than the encoder's rounding does where that is most of the

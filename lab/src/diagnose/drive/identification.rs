@@ -221,9 +221,8 @@ mod tests {
     #[test]
     fn the_noise_of_the_recorded_effort_has_its_density() {
         let noisy = TestDrive { effort_noise: 0.3, ..TestDrive::PLAIN }.trial(4.0, 7);
-        let position: Vec<f64> = noisy.position.clone();
-        let thinned =
-            DriveTrial::new("thinned.csv".into(), noisy.source_time.clone(), &position, noisy.effort.clone(), None, 3);
+        let (time, effort) = (noisy.source_time.clone(), noisy.effort.clone());
+        let thinned = DriveTrial::new("thinned.csv".into(), time, &noisy.position, effort, None, 3);
         let density = |trials: &[DriveTrial]| Data { trials, least_encoder_variance: 0.0 }.effort_noise_density();
         // A median of 4000 squares that overlap: some hundredths.
         for trials in [[noisy.clone()], [thinned]] {
@@ -371,20 +370,10 @@ mod tests {
 
     #[test]
     fn friction_by_the_root_of_the_speed_stands_for_itself() {
-        let outcome = identified(&TestDrive { sublinear: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 34);
+        let outcome = identified(&TestDrive { root: 0.4, ..TestDrive::PLAIN }, 0.75, 5.0, 34);
         assert_eq!(outcome.chosen.model.names(), ["sublinear_friction"]);
         let own = outcome.chosen.model.values_of(0);
         assert!((outcome.chosen.values[own.start + 1] - 0.5).abs() < 0.03, "{:?}", outcome.chosen.values);
-    }
-
-    /// Dry friction takes all of it but a fifth, and the exponent nearly all of that.
-    #[test]
-    fn friction_that_grows_slowly_with_the_speed_is_no_dry_friction() {
-        let grease = TestDrive { sublinear: 0.4, exponent: 0.3, ..TestDrive::PLAIN };
-        let outcome = identified(&grease, 0.75, 5.0, 35);
-        assert_eq!(outcome.chosen.model.names(), ["sublinear_friction"]);
-        let exponent = outcome.chosen.values[outcome.chosen.model.values_of(0).start + 1];
-        assert!((exponent - 0.3).abs() < 0.03, "{exponent}");
     }
 
     #[test]

@@ -14,6 +14,7 @@ use super::links;
 use super::model::Model;
 use super::scales::Scales;
 use super::term::Term;
+use crate::diagnose::evidence::share_beyond_noise;
 use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
@@ -51,6 +52,16 @@ pub struct Worth {
     pub part_of_all: f64,
     /// Whether the gain is there throughout: the larger of Vuong's and Clarke's statistic over blocks.
     pub throughout: f64,
+}
+
+impl Worth {
+    /// Whether a term takes enough of what is left, and of all or of the rest; `is_free` where its shape is, `is_of_interest` where the rest is no
+    /// negligible part of the effort.
+    fn is_of_size(&self, is_free: bool, is_of_interest: bool) -> bool {
+        let least_part = if is_free { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
+        let takes_the_rest = self.share > MOST_OF_THE_REST && is_of_interest;
+        self.share > LEAST_SHARE && (self.part_of_all > least_part || takes_the_rest)
+    }
 }
 
 /// Sets that each round grows from.
@@ -92,14 +103,11 @@ impl Search<'_> {
     pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
         let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape(&self.scales)).count();
         let is_free = shapes(more) > shapes(less);
-        let least_part = if is_free { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
         let worth = self.worth(more, less);
-        let takes_the_rest =
-            worth.share > MOST_OF_THE_REST && self.unexplained(less) > LEAST_PART_OF_EFFORT * self.scales.effort;
+        let is_of_interest = self.unexplained(less) > LEAST_PART_OF_EFFORT * self.scales.effort;
         self.explains_rows(more, less)
             && is_likelier(more, less)
-            && worth.share > LEAST_SHARE
-            && (worth.part_of_all > least_part || takes_the_rest)
+            && worth.is_of_size(is_free, is_of_interest)
             && worth.throughout > LEAST_THROUGHOUT
     }
 
@@ -277,9 +285,8 @@ impl Search<'_> {
                     && base.model.terms.contains(term)
                     && term.is_at_end(&fit.values[fit.model.values_of(*at)], &fit.model.scales)
             };
-            let simpler =
-                (known..fit.model.terms.len()).find(is_at_end).and_then(|at| simpler(&fit, at).into_iter().next());
-            let Some((model, values)) = simpler else { return fit };
+            let ended = (known..fit.model.terms.len()).find(is_at_end);
+            let Some((model, values)) = ended.and_then(|at| simpler(&fit, at).into_iter().next()) else { return fit };
             fit = self.polished(&Fit { model, values, ..fit });
         }
     }
@@ -306,10 +313,9 @@ impl Search<'_> {
 /// [`NOISE_POWER_KNOWN_TO`]. Where more noise was recorded than the law leaves, a controller commanded it: it moved the drive, and none of it is left.
 #[must_use]
 pub fn share_taken(left: f64, held: f64, noise: f64) -> f64 {
-    let taken = left - held;
-    let is_commanded = noise > (1.0 + NOISE_POWER_KNOWN_TO.value()) * held;
-    let noise = if is_commanded { 0.0 } else { noise.min(held) };
-    if taken > 0.0 { taken / (left - noise).max(taken).max(NOISE_POWER_KNOWN_TO * noise) } else { 0.0 }
+    let known_to = NOISE_POWER_KNOWN_TO.value();
+    let is_commanded = noise > (1.0 + known_to) * held;
+    share_beyond_noise(left, held, if is_commanded { 0.0 } else { noise.min(held) }, known_to)
 }
 
 fn is_at_end(fit: &Fit) -> bool {
@@ -392,6 +398,20 @@ mod tests {
         // Nor is one that the rig file holds.
         let known = Search { nominal: creeping.clone(), ..search };
         assert_eq!(known.within_ends(both.clone(), &creeping).model, both.model);
+    }
+
+    #[test]
+    fn a_term_of_whatever_shape_is_told_that_takes_most_of_the_rest() {
+        let is_told = |share: f64, part_of_all: f64, is_free: bool, is_of_interest: bool| {
+            Worth { share, part_of_all, throughout: 10.0 }.is_of_size(is_free, is_of_interest)
+        };
+        // The exponent of grease beside dry friction, and a cogging of a robot's axis.
+        assert!(is_told(0.91, 0.185, true, true) && !is_told(0.64, 0.193, true, true));
+        // Friction beside a link; the same where nobody asks what is left.
+        assert!(is_told(0.9, 0.05, false, true) && !is_told(0.9, 0.05, false, false));
+        assert!(
+            is_told(0.3, 0.15, false, false) && !is_told(0.3, 0.15, true, false) && !is_told(0.2, 0.9, false, true)
+        );
     }
 
     /// By hand, in squares of one unit.

@@ -40,10 +40,8 @@ pub struct TestDrive {
     pub coulomb: f64,
     /// m, length over which dry friction builds up after a turn (Dahl's); zero: at once.
     pub presliding: f64,
-    /// N, friction that grows with a power of the speed, at 0.1 m/s.
-    pub sublinear: f64,
-    /// Exponent of that power.
-    pub exponent: f64,
+    /// N, friction that grows with the root of the speed, at 0.1 m/s.
+    pub root: f64,
     /// N, ripple along the way, at a pitch of 5 mm.
     pub ripple: f64,
     /// N, constant load.
@@ -84,8 +82,7 @@ impl TestDrive {
         viscous: 4.0,
         coulomb: 0.0,
         presliding: 0.0,
-        sublinear: 0.0,
-        exponent: 0.5,
+        root: 0.0,
         ripple: 0.0,
         load: 0.0,
         disturbance: 0.0,
@@ -140,11 +137,12 @@ impl TestDrive {
                     load_v += step * (passed - on_load * load_v) / (link.load_share * self.mass);
                     load_x += step * load_v;
                 }
-                let sublinear = self.sublinear * v.signum() * (v.abs() / 0.1).powf(self.exponent);
+                let root = self.root * v.signum() * (v.abs() / 0.1).sqrt();
                 let ripple = self.ripple * (std::f64::consts::TAU * x / 5e-3).sin();
-                let dry = sublinear + bristle + ripple;
-                let free =
-                    v + step * (drives - passed - dry - (self.viscous - on_load) * v - self.load + white) / motor;
+                let dry = root + bristle;
+                let free = v + step
+                    * (drives - passed - dry - ripple - (self.viscous - on_load) * v - self.load + white)
+                    / motor;
                 let at_once = if self.presliding > 0.0 { 0.0 } else { self.coulomb };
                 let held = step * at_once / motor;
                 v = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
