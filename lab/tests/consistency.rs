@@ -136,7 +136,7 @@ fn in_model(written: &Written) -> Vec<String> {
         let expected = if is_good { changes[0] } else { changes[1] };
         match stated {
             Some(stated) if same(stated, expected) => {}
-            None if key == "effort_delay_s" => {}
+            None if key.starts_with("effort_") => {}
             // In a merged diagnosis one channel may be good and keep its values.
             Some(stated) if same(stated, changes[0]) && all(&written.json, "channels").len() > 1 => {}
             _ => wrong.push(format!("model: {key} = {stated:?}, not {expected}")),

@@ -185,7 +185,7 @@ fn starting_points(base: &Fit, own: &[f64]) -> Vec<(Vec<f64>, Noise)> {
         return vec![(fitted, base.noise)];
     }
     let mut given = fitted.clone();
-    given[..NOMINAL].copy_from_slice(&[scales.inertia, scales.viscous, 0.3 * scales.period_s]);
+    given[..NOMINAL].copy_from_slice(&[scales.inertia, scales.viscous, 0.3 * scales.period_s, 0.0]);
     let little = Noise { ln_disturbance: scales.starting_density().ln(), ..base.noise };
     vec![(fitted, base.noise), (given, little)]
 }

@@ -110,7 +110,7 @@ mod tests {
         let data = Data { trials: &trials, least_encoder_variance: 1e-12 };
         let model = Model { terms: vec![Term::ConstantLoad], scales: SCALES };
         let noise = Noise { ln_disturbance: (1e-5f64).ln(), ln_encoder: (25e-12f64).ln() };
-        let whole = fit(&data, &model, &[0.8, 4.0, 0.0, 0.15], noise, Effort::FULL);
+        let whole = fit(&data, &model, &[0.8, 4.0, 0.0, 0.0, 0.15], noise, Effort::FULL);
         let common = noise.with_crossing(15.0, 1e-3, 0.8);
         let held = Folds::of(&trials).held_out(&data, &whole, &common);
         // One half is judged by the other's value, zero, and the other by the one's, 0.3: both leave all of it. A leak leaves nothing of it,

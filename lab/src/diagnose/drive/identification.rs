@@ -63,7 +63,11 @@ fn identify_between_pushes(
     if !matches!(first.verdict, Verdict::Unknown | Verdict::PartlyExplained) {
         return Some(first);
     }
-    let law = DriveLaw::nominal(rig.inertia, rig.viscous, first.chosen.values[index::DELAY]);
+    let values = &first.chosen.values;
+    let law = DriveLaw {
+        effort_averaging: values[index::AVERAGING],
+        ..DriveLaw::nominal(rig.inertia, rig.viscous, values[index::DELAY])
+    };
     let missing = missing_under(&first.trials, rig)?;
     let stretches = outside_forces(&first.trials, &missing, &law, &first.chosen.model.scales);
     if stretches.is_empty() {
@@ -249,6 +253,19 @@ mod tests {
         assert_eq!(outcome.verdict, Verdict::NoMismatch);
         // Half a step of the test's own simulation, which updates the velocity first, is 20 us.
         assert!((outcome.chosen.values[index::DELAY] - 0.6e-3).abs() < 0.025e-3);
+    }
+
+    /// A current that is measured through a row and not set at its start: as if held, its quick parts are too small, and a weak link seems
+    /// to swing.
+    #[test]
+    fn an_effort_that_is_recorded_as_a_mean_about_its_row_is_no_link() {
+        let averaged = TestDrive { is_averaged: true, encoder: 1e-6, ..TestDrive::PLAIN };
+        let outcome = identified(&averaged, 0.8, 4.0, 95);
+        assert_eq!(outcome.verdict, Verdict::NoMismatch);
+        let [delay, averaging] = [index::DELAY, index::AVERAGING].map(|at| outcome.chosen.values[at]);
+        assert!((delay + 0.5e-3).abs() < 0.03e-3 && (averaging - 0.25).abs() < 0.03, "{delay} {averaging}");
+        let ripple = identified(&TestDrive { ripple: 0.3, ..averaged }, 0.8, 4.0, 96);
+        assert_eq!(ripple.chosen.model.names(), ["cogging"]);
     }
 
     #[test]

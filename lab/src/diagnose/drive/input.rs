@@ -1,5 +1,7 @@
 //! What acts on the drive between two encoder rows: means of held and of sampled signals, early or late by any time.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::law::DriveLaw;
@@ -34,6 +36,7 @@ impl Inputs {
         let of = |law: &DriveLaw| {
             [
                 law.effort_delay_s,
+                law.effort_averaging,
                 law.effort_lag_s,
                 law.effort_limit,
                 law.load_scale,
@@ -47,8 +50,10 @@ impl Inputs {
     /// The inputs of `trial` under the actuator and the force sensor of `law`.
     #[must_use]
     pub fn of(trial: &DriveTrial, law: &DriveLaw) -> Self {
-        let clipped = |effort: f64| effort.clamp(-law.effort_limit, law.effort_limit);
-        let held = Integral::held(&trial.source_time, trial.effort.iter().map(|effort| clipped(*effort)));
+        let acting =
+            unaveraged(&trial.source_time, &trial.effort, law.effort_averaging * trial.recorded_period_s.powi(2));
+        let clipped = acting.iter().map(|effort| effort.clamp(-law.effort_limit, law.effort_limit));
+        let held = Integral::held(&trial.source_time, clipped);
         let mut effort = held.means(&trial.time, -law.effort_delay_s);
         if law.effort_lag_s > 0.0 {
             held.lag(&mut effort, &trial.time, -law.effort_delay_s, law.effort_lag_s);
@@ -67,6 +72,20 @@ impl Inputs {
         );
         Self { effort, force }
     }
+}
+
+/// What `averaged`, recorded at `time`, was before a drive took its means: the record less `spread` times its second derivative, the first term
+/// of the inverse of any mean about its own row, of which `spread` is half the variance, s^2. The ends stay.
+fn unaveraged<'a>(time: &[f64], averaged: &'a [f64], spread: f64) -> Cow<'a, [f64]> {
+    if spread == 0.0 {
+        return Cow::Borrowed(averaged);
+    }
+    let mut before = averaged.to_vec();
+    for row in 1..before.len().saturating_sub(1) {
+        let slope = |from: usize| (averaged[from + 1] - averaged[from]) / (time[from + 1] - time[from]);
+        before[row] -= spread * 2.0 * (slope(row) - slope(row - 1)) / (time[row + 1] - time[row - 1]);
+    }
+    Cow::Owned(before)
 }
 
 /// Integral of a signal over time, from which the mean over any interval follows.
@@ -166,6 +185,19 @@ mod tests {
         let held = Integral::held(&time, [4.0, 8.0, 2.0, 2.0].into_iter());
         assert_eq!(held.means(&time, -0.25), [0.0, 4.0, 7.0, 3.5]);
         assert_eq!(held.means(&time, 0.0), [0.0, 4.0, 8.0, 2.0]);
+    }
+
+    /// The mean of t^2 over a window of w about its row is t^2 + w^2 / 12, at whatever times the rows are.
+    #[test]
+    fn what_a_mean_about_its_row_was_of_is_found_again() {
+        let time = [0.0, 0.9, 2.1, 3.0, 4.2];
+        let window: f64 = 1.5;
+        let means = time.map(|t| t * t + window * window / 12.0);
+        let before = unaveraged(&time, &means, window * window / 24.0);
+        for (t, before) in time.iter().zip(before.iter()).skip(1).take(3) {
+            assert!((before - t * t).abs() < 1e-12, "{before} at {t}");
+        }
+        assert_eq!(unaveraged(&time, &means, 0.0), means.as_slice());
     }
 
     #[test]

@@ -126,6 +126,9 @@ pub struct DriveLaw {
     pub viscous: f64,
     /// By how much the effort acts later than it is recorded, s; may be a part of a row, early or late.
     pub effort_delay_s: f64,
+    /// How much the effort is averaged where it is recorded, rows^2: what acts is the record less so many of its second differences. Zero: each
+    /// row is what acts until the next; a quarter: the mean of what acts before and after its row.
+    pub effort_averaging: f64,
     /// First-order lag of the effort, s.
     pub effort_lag_s: f64,
     /// Greatest effort either way, N or N m.
@@ -163,6 +166,7 @@ impl DriveLaw {
             inertia,
             viscous,
             effort_delay_s,
+            effort_averaging: 0.0,
             effort_lag_s: 0.0,
             effort_limit: f64::INFINITY,
             load_scale: 1.0,

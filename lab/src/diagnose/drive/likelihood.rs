@@ -35,7 +35,7 @@ impl Data<'_> {
     /// for a row of dt has s^2 dt.
     #[must_use]
     pub fn effort_noise_density(&self) -> f64 {
-        let of = |trial: &DriveTrial| robust_white_variance(&trial.effort) * trial.recorded_period_s();
+        let of = |trial: &DriveTrial| robust_white_variance(&trial.effort) * trial.recorded_period_s;
         let rows: f64 = self.trials.iter().map(|trial| trial.len() as f64).sum();
         self.trials.iter().map(|trial| of(trial) * trial.len() as f64).sum::<f64>() / rows.max(1.0)
     }

@@ -1,12 +1,12 @@
 //! A model of the drive: its terms, and all values in one vector.
 
-use super::criteria::INERTIA_FACTOR;
+use super::criteria::{INERTIA_FACTOR, MOST_AVERAGING};
 use super::law::DriveLaw;
 use super::range::Range;
 use super::scales::Scales;
 use super::term::Term;
 
-/// Terms beyond the nominal ones; the values are inertia, viscous friction, delay of the effort, then those of each term.
+/// Terms beyond the nominal ones; the values are inertia, viscous friction, delay and averaging of the effort, then those of each term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     /// In the order of their values.
@@ -23,10 +23,12 @@ pub mod index {
     pub const VISCOUS: usize = 1;
     /// s
     pub const DELAY: usize = 2;
+    /// rows^2
+    pub const AVERAGING: usize = 3;
 }
 
 /// How many values are nominal.
-pub const NOMINAL: usize = 3;
+pub const NOMINAL: usize = 4;
 
 impl Model {
     /// The ranges of all values.
@@ -34,13 +36,13 @@ impl Model {
     pub fn ranges(&self) -> Vec<Range> {
         let scales = &self.scales;
         let viscous = (scales.effort / scales.speed).max(scales.viscous);
-        // A lag and a late recording of the same length are hardly told apart: beside a lag the effort acts as it is recorded.
-        let (earliest, latest) =
-            if self.has("effort_lag") { (0.0, 0.0) } else { (-scales.period_s, scales.latest_effort_s) };
+        // A lag and a late recording of the same length are hardly told apart: beside a lag the effort acts no later than it is recorded.
+        let latest = if self.has("effort_lag") { 0.0 } else { scales.latest_effort_s };
         let mut ranges = vec![
             Range::relative(scales.inertia / INERTIA_FACTOR, scales.inertia * INERTIA_FACTOR),
             Range::absolute(0.0, f64::INFINITY, 0.1 * viscous),
-            Range::absolute(earliest, latest, 0.3 * scales.period_s),
+            Range::absolute(-scales.period_s, latest, 0.3 * scales.period_s),
+            Range::absolute(0.0, MOST_AVERAGING.value(), 0.1 * MOST_AVERAGING.value()),
         ];
         self.terms.iter().for_each(|term| ranges.extend(term.ranges(scales)));
         ranges
@@ -63,7 +65,10 @@ impl Model {
     /// The law with `values`.
     #[must_use]
     pub fn law(&self, values: &[f64]) -> DriveLaw {
-        let mut law = DriveLaw::nominal(values[index::INERTIA], values[index::VISCOUS], values[index::DELAY]);
+        let mut law = DriveLaw {
+            effort_averaging: values[index::AVERAGING],
+            ..DriveLaw::nominal(values[index::INERTIA], values[index::VISCOUS], values[index::DELAY])
+        };
         let mut rest = &values[NOMINAL..];
         for term in &self.terms {
             let (own, others) = rest.split_at(term.ranges(&self.scales).len());

@@ -107,7 +107,7 @@ mod tests {
     fn every_value_of_a_play_has_the_interval_of_its_fit() {
         let fit = Fit {
             model: Model { terms: vec![Term::Play(Side::Motor)], scales: SCALES },
-            values: vec![0.8, 4.0, 0.0, 4e4, 30.0, 0.6, 2e-4, 0.7],
+            values: vec![0.8, 4.0, 0.0, 0.0, 4e4, 30.0, 0.6, 2e-4, 0.7],
             noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
             log_likelihood: 0.0,
             ended: Ended::Converged,

@@ -56,12 +56,12 @@ pub fn missing_under(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Vec<Ve
     let band = LOWEST_BAND_HZ.value().min(0.1 / scales.period_s);
     let noise =
         Noise { ln_disturbance: 0.0, ln_encoder: variance.ln() }.with_crossing(band, scales.period_s, rig.inertia);
-    let under = |rows: f64| {
-        let values = [&[rig.inertia, rig.viscous, rows * scales.period_s], effects.as_slice()].concat();
+    let under = |[rows, averaging]: &[f64; 2]| {
+        let values = [&[rig.inertia, rig.viscous, rows * scales.period_s, *averaging], effects.as_slice()].concat();
         let fit = Fit { model: model.clone(), values, noise, log_likelihood: 0.0, ended: Ended::Converged };
         missing_forces(&data, &fit, &noise)
     };
-    DELAY_STARTS.iter().map(|rows| under(*rows)).min_by(|a, b| rms(a).total_cmp(&rms(b)))
+    EFFORT_STARTS.iter().map(under).min_by(|a, b| rms(a).total_cmp(&rms(b)))
 }
 
 /// Sizes of `trials`; `None` where they show no motion.
@@ -112,8 +112,9 @@ pub fn encoder_variance(trials: &[DriveTrial], scales: &Scales) -> f64 {
     white.max(0.3 * scales.resolution.powi(2) / 12.0)
 }
 
-/// Delays of the effort that the nominal fit starts from, in rows: the likelihood has a corner at whole rows.
-const DELAY_STARTS: [f64; 4] = [-0.5, 0.01, 0.5, 2.5];
+/// Delays of the effort that the nominal fit starts from, in rows, and its averaging, rows^2: the likelihood has a corner at whole rows. A mean about
+/// its own row is early by half a row beside what is held from there.
+const EFFORT_STARTS: [[f64; 2]; 4] = [[-0.5, 0.25], [0.01, 0.0], [0.5, 0.0], [2.5, 0.0]];
 
 /// Latest effort that counts as a late recording, s.
 fn latest_effort_s(period_s: f64) -> f64 {
@@ -130,7 +131,7 @@ pub fn punctual_and_lagged(
     nominal: &Fit,
     encoder_variance: f64,
 ) -> Option<[Fit; 2]> {
-    let recorded = data.trials[0].recorded_period_s();
+    let recorded = data.trials[0].recorded_period_s;
     let delay = nominal.values[index::DELAY];
     if delay <= recorded || nominal.model.has("effort_lag") {
         return None;
@@ -156,8 +157,8 @@ fn law_of(trials: &[DriveTrial], rig: &NominalDrive, scales: Scales) -> (Model, 
 pub fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_variance: f64) -> Option<Fit> {
     let (model, effects) = law_of(data.trials, rig, scales);
     let noise = Noise { ln_disturbance: scales.starting_density().ln(), ln_encoder: encoder_variance.ln() };
-    let fits = DELAY_STARTS.map(|rows| {
-        let start = [&[scales.inertia, scales.viscous, rows * scales.period_s], effects.as_slice()].concat();
+    let fits = EFFORT_STARTS.map(|[rows, averaging]| {
+        let start = [&[scales.inertia, scales.viscous, rows * scales.period_s, averaging], effects.as_slice()].concat();
         fit(data, &model, &start, noise, Effort::FULL)
     });
     let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;

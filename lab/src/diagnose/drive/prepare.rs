@@ -35,7 +35,7 @@ pub fn trials(rig: &Rig, recordings: &[Recording]) -> Vec<DriveTrial> {
             DriveTrial::new(recording.name.clone(), recording.time.clone(), &recording.position, effort, force, every);
         let scale = rig.drive.map_or(1.0, |drive| drive.load_scale);
         let load = recording.load.as_ref().map(|load| load.iter().map(|load| scale * load).collect());
-        DriveTrial { load, force_density: noise * noise * trial.recorded_period_s(), ..trial }
+        DriveTrial { load, force_density: noise * noise * trial.recorded_period_s, ..trial }
     };
     recordings.iter().map(trial).collect()
 }

@@ -11,7 +11,7 @@ use super::fit::{Effort, Fit, fit};
 use super::law::Side;
 use super::likelihood::Data;
 use super::links;
-use super::model::Model;
+use super::model::{Model, index};
 use super::scales::Scales;
 use super::term::Term;
 use crate::diagnose::evidence::share_beyond_noise;
@@ -158,7 +158,7 @@ impl Search<'_> {
                 let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
                 grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest), rigid)));
             }
-            grown.retain(|fit| !is_at_end(fit));
+            grown.retain(|fit| !is_at_end(fit) && !self.hurries(fit));
             let grown = distinct(grown);
             sets.extend(grown.iter().cloned());
             let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE * fit.values.len() as f64;
@@ -193,6 +193,16 @@ impl Search<'_> {
         let all = grown.iter().filter(|fit| !is_at_end(fit)).chain([best]);
         let least = all.map(|fit| self.unexplained(fit)).fold(f64::INFINITY, f64::min);
         least > LINK_PART * self.unexplained(&self.nominal)
+    }
+
+    /// Whether `fit` has a link that wants the effort as early as a search allows, where the nominal law does not: that is no motion of two bodies, and
+    /// the effort of no drive acts a row before it is recorded.
+    fn hurries(&self, fit: &Fit) -> bool {
+        let is_earliest = |fit: &Fit| {
+            let (range, delay) = (fit.model.ranges()[index::DELAY], fit.values[index::DELAY]);
+            range.steps_between(range.low, delay) < 1e-9
+        };
+        fit.model.has_link() && is_earliest(fit) && !is_earliest(&self.nominal)
     }
 
     /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
@@ -366,7 +376,7 @@ mod tests {
         let data = Data { trials: &trials, least_encoder_variance: 0.3 * drive.encoder.powi(2) };
         let fit = |terms: Vec<Term>, own: &[f64]| Fit {
             model: Model { terms, scales: SCALES },
-            values: [&[0.8, 4.0, 0.0], own].concat(),
+            values: [&[0.8, 4.0, 0.0, 0.0], own].concat(),
             noise: Noise { ln_disturbance: -8.0, ln_encoder: drive.encoder.powi(2).ln() },
             log_likelihood: 0.0,
             ended: Ended::Converged,
@@ -387,7 +397,7 @@ mod tests {
         assert_eq!(simpler.model.terms, [Term::Coulomb, Term::Cogging]);
         // Four seconds tell the level and the ripple to some hundredths.
         assert!(
-            (simpler.values[3] - 0.4).abs() < 0.02 && (simpler.values[4] - 0.3).abs() < 0.02,
+            (simpler.values[4] - 0.4).abs() < 0.02 && (simpler.values[5] - 0.3).abs() < 0.02,
             "{:?}",
             simpler.values
         );

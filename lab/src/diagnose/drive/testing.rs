@@ -56,6 +56,8 @@ pub struct TestDrive {
     pub effort_lag_s: f64,
     /// s, less than a row: by how much the effort acts later than it is recorded.
     pub effort_late_s: f64,
+    /// Whether the mean of the effort before and after its row is recorded, and not what acts from there.
+    pub is_averaged: bool,
     /// What gives between motor, where the encoder is, and load.
     pub link: Option<TestLink>,
 }
@@ -90,6 +92,7 @@ impl TestDrive {
         effort_noise: 0.0,
         effort_lag_s: 0.0,
         effort_late_s: 0.0,
+        is_averaged: false,
         link: None,
     };
 
@@ -115,9 +118,10 @@ impl TestDrive {
             let u = 900.0 * (reference(t) - x) + 38.0 * (rate - v);
             time.push(t);
             position.push(x + self.encoder * normal());
-            effort.push(if self.effort_noise > 0.0 { u + self.effort_noise * normal() } else { u });
             let before = command;
             command = u;
+            let shown = if self.is_averaged { 0.5 * (before + u) } else { u };
+            effort.push(if self.effort_noise > 0.0 { shown + self.effort_noise * normal() } else { shown });
             for part in 0..STEPS {
                 let acts = if (part as f64 + 0.5) * step < self.effort_late_s { before } else { command };
                 drives = if self.effort_lag_s > 0.0 {

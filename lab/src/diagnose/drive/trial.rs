@@ -16,6 +16,8 @@ pub struct DriveTrial {
     pub restart: Vec<bool>,
     /// Median time between encoder rows, s.
     pub period_s: f64,
+    /// Median time between recorded rows, s.
+    pub recorded_period_s: f64,
     /// Time of each recorded row, s.
     pub source_time: Vec<f64>,
     /// Effort, N or N m, held from its row to the next.
@@ -46,9 +48,22 @@ impl DriveTrial {
         let time: Vec<f64> = source_time.iter().step_by(every).copied().collect();
         let position: Vec<f64> = position.iter().step_by(every).copied().collect();
         let period_s = median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(1.0);
+        let recorded_period_s = median(source_time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(period_s);
         let restart =
             (0..time.len()).map(|row| row == 0 || time[row] - time[row - 1] > GAP_PERIODS * period_s).collect();
-        Self { name, time, position, restart, period_s, source_time, effort, load: None, force, force_density: 0.0 }
+        Self {
+            name,
+            time,
+            position,
+            restart,
+            period_s,
+            recorded_period_s,
+            source_time,
+            effort,
+            load: None,
+            force,
+            force_density: 0.0,
+        }
     }
 
     /// What the effort has beyond the load as it is given, N or N m, at each recorded row.
@@ -63,12 +78,6 @@ impl DriveTrial {
     pub fn without_effort(mut self) -> Self {
         self.effort.fill(0.0);
         Self { load: None, ..self }
-    }
-
-    /// Median time between recorded rows, s.
-    #[must_use]
-    pub fn recorded_period_s(&self) -> f64 {
-        median(self.source_time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(self.period_s)
     }
 
     /// Encoder rows.
@@ -102,6 +111,7 @@ impl DriveTrial {
             position: self.position[rows].to_vec(),
             restart,
             period_s: self.period_s,
+            recorded_period_s: self.recorded_period_s,
             source_time: self.source_time.clone(),
             effort: self.effort.clone(),
             load: self.load.clone(),

@@ -125,10 +125,10 @@ mod tests {
             log_likelihood,
             ended: Ended::Converged,
         };
-        let less = fit(vec![], vec![0.8, 4.0, 0.0], 100.0);
-        let more = fit(vec![Term::Coulomb], vec![0.8, 4.0, 0.0, 0.1], 140.0);
+        let less = fit(vec![], vec![0.8, 4.0, 0.0, 0.0], 100.0);
+        let more = fit(vec![Term::Coulomb], vec![0.8, 4.0, 0.0, 0.0, 0.1], 140.0);
         let ratio = |inflation: f64| {
-            let inflations = vec![1.0, 1.0, 1.0, inflation];
+            let inflations = vec![1.0, 1.0, 1.0, 1.0, inflation];
             RobustRatio::of(&more, &less, 0, &Uncertainty { ends: Vec::new(), covariance: Vec::new(), inflations })
         };
         assert!(ratio(1.0).is_decisive() && ratio(1.0).p_value() < 1e-15);

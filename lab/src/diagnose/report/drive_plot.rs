@@ -20,7 +20,11 @@ const BY_POSITION: [&str; 2] = ["gravity_load", "cogging"];
 /// One trace a trial.
 pub(super) fn traces(outcome: &Outcome) -> Vec<Trace> {
     let whole = outcome.chosen.model.law(&outcome.chosen.values);
-    let law = DriveLaw { load_scale: whole.load_scale, ..DriveLaw::nominal(1.0, 0.0, whole.effort_delay_s) };
+    let law = DriveLaw {
+        effort_averaging: whole.effort_averaging,
+        load_scale: whole.load_scale,
+        ..DriveLaw::nominal(1.0, 0.0, whole.effort_delay_s)
+    };
     let each = outcome.trials.iter().enumerate().map(|(at, trial)| {
         let effort = Inputs::of(trial, &law).effort;
         let by = |which: usize| -> Vec<f32> {
@@ -114,6 +118,7 @@ fn beside_inertia(outcome: &Outcome, trial: usize) -> Vec<f64> {
         nominal.noise.with_crossing(outcome.band_hz, nominal.model.scales.period_s, nominal.values[index::INERTIA]);
     let whole = chosen.model.law(&chosen.values);
     let bare = DriveLaw {
+        effort_averaging: whole.effort_averaging,
         effort_lag_s: whole.effort_lag_s,
         effort_limit: whole.effort_limit,
         load_scale: whole.load_scale,

@@ -277,6 +277,13 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         row(inertia, c.inertia_unit(), drive.inertia, outcome.inertia()),
         row("viscous", c.damping_unit(), drive.viscous, value(index::VISCOUS)),
         row("effort_delay", "s", 0.0, value(index::DELAY)),
+        Nominal {
+            name: "effort_averaging".to_owned(),
+            unit: "1".to_owned(),
+            given: 0.0,
+            fitted: values[index::AVERAGING],
+            ci95: channel::told(values[index::AVERAGING], ends[index::AVERAGING]),
+        },
     ];
     rows.extend(outcome.chosen.model.load_scale().map(|at| Nominal {
         name: "load_scale".to_owned(),
@@ -295,7 +302,9 @@ fn correlations(outcome: &Outcome, rig: &Rig) -> Option<Correlations> {
     let shown = |values: &[f64]| {
         let moved = Fit { values: values.to_vec(), ..fit.clone() };
         let ends = vec![[0.0; 2]; values.len()];
-        let at = [index::INERTIA, index::VISCOUS, index::DELAY].into_iter().chain(outcome.chosen.model.load_scale());
+        let at = [index::INERTIA, index::VISCOUS, index::DELAY, index::AVERAGING]
+            .into_iter()
+            .chain(outcome.chosen.model.load_scale());
         let mut shown: Vec<(String, f64)> = names.iter().cloned().zip(at.map(|at| values[at])).collect();
         for effect in (0..fit.model.terms.len()).filter_map(|at| named(&moved, &ends, at)) {
             let parameters = effect.effect.spec().forms[effect.form].parameters.iter().zip(&effect.values);

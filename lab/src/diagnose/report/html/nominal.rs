@@ -55,7 +55,7 @@ fn replayed(answer: &Diagnosis, pictures: &PlotData) -> Markup {
 
 /// Whether the rig file can state the value.
 fn is_stated(value: &Nominal) -> bool {
-    value.name != "effort_delay_s"
+    !value.name.starts_with("effort_")
 }
 
 fn row(value: &Nominal) -> Markup {
