@@ -1,53 +1,20 @@
 //! What all estimators of one contact share: front end, ring of observations, range of movement.
 
-use crate::contact::{Impedance, Observation, Sample};
+mod config;
+mod estimator_state;
+mod event;
+
+pub(crate) use config::ValidatedStreamConfig;
+pub use config::{ContactLoss, StreamConfig};
+pub use estimator_state::EstimatorState;
+pub use event::Event;
+
+use crate::contact::{Observation, Sample};
 use crate::error::ConfigError;
-use crate::front_end::{FrontEnd, FrontEndConfig, FrontEndState, Reading, Rejection};
+use crate::front_end::{FrontEnd, FrontEndState, Rejection};
 use crate::math::{larger, smaller};
-use crate::quality::Flags;
-use crate::quality::{Estimate, IntervalEstimator, SensorResolution};
-use crate::recursive::CusumRls;
-use crate::update_law::UpdateLaw;
+use crate::quality::{Flags, IntervalEstimator};
 use crate::window::{Recent, Window};
-#[cfg(feature = "serde")]
-use serde::{Deserialize, Serialize};
-
-/// What is discarded at a loss of contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
-pub enum ContactLoss {
-    /// Estimate, covariance and window: each contact begins as the first did.
-    #[default]
-    Everything,
-    /// Covariance and window; the next contact begins from the last estimate.
-    Memory,
-    /// Nothing: the next contact goes on where this one ended.
-    Nothing,
-}
-
-/// Settings of a [`Stream`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
-pub struct StreamConfig {
-    /// Position, velocity, contact.
-    pub front_end: FrontEndConfig,
-    /// What the sensors resolve, for the intervals.
-    pub sensors: SensorResolution,
-    /// What is discarded at a loss of contact.
-    pub contact_loss: ContactLoss,
-    /// Samples after which a movement is half forgotten, for [`Flags::LITTLE_MOVEMENT`]; at least 1.
-    pub movement_memory: u16,
-}
-
-impl StreamConfig {
-    /// The paper's bench: matched filter, 0.1 mm a count, 0.09 N of noise, everything forgotten at a loss.
-    pub const BENCH: Self = Self {
-        front_end: FrontEndConfig::BENCH,
-        sensors: SensorResolution { position_resolution: 1e-4, force_noise: 0.09 },
-        contact_loss: ContactLoss::Everything,
-        movement_memory: 300,
-    };
-}
 
 /// Turns samples into observations and keeps the latest `N`.
 #[derive(Debug, Clone)]
@@ -62,42 +29,6 @@ pub struct Stream<const N: usize> {
     in_contact: bool,
     low: f32,
     high: f32,
-}
-
-/// Validated settings with the constants derived from them.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ValidatedStreamConfig {
-    front_end: FrontEnd,
-    assessor: IntervalEstimator,
-    contact_loss: ContactLoss,
-    four_counts: f32,
-    half_movement_decay: f32,
-}
-
-impl ValidatedStreamConfig {
-    pub(crate) fn new(config: StreamConfig) -> Result<Self, ConfigError> {
-        let front_end = FrontEnd::new(config.front_end)?;
-        config.sensors.check()?;
-        crate::error::require(config.movement_memory > 0, "movement_memory", "at least 1 sample")?;
-        Ok(Self {
-            front_end,
-            assessor: IntervalEstimator::new(&front_end, config.sensors),
-            contact_loss: config.contact_loss,
-            four_counts: 4.0 * config.sensors.position_resolution / config.front_end.units.penetration,
-            half_movement_decay: 0.5 * core::f32::consts::LN_2 / f32::from(config.movement_memory),
-        })
-    }
-}
-
-/// What a sample meant to the contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
-    /// The reading.
-    pub reading: Reading,
-    /// Contact was lost at this sample.
-    pub lost: bool,
-    /// [`Flags::RESTARTED`] and [`Flags::LITTLE_MOVEMENT`] where they hold.
-    pub flags: Flags,
 }
 
 impl<const N: usize> Stream<N> {
@@ -208,99 +139,6 @@ impl<const N: usize> Stream<N> {
     /// The front end.
     pub fn front_end(&self) -> &FrontEnd {
         &self.front_end
-    }
-}
-
-/// A law with its state and its latest estimate.
-#[derive(Debug, Clone)]
-pub struct EstimatorState<L: UpdateLaw> {
-    law: L,
-    state: L::State,
-    last: Estimate,
-}
-
-impl<L: UpdateLaw> EstimatorState<L> {
-    /// At the start.
-    pub fn new(law: L) -> Self {
-        Self { state: law.initial_state(), law, last: Estimate::UNKNOWN }
-    }
-
-    /// Resets it to the initial state.
-    pub fn restart(&mut self) {
-        self.state = self.law.initial_state();
-        self.last = Estimate::UNKNOWN;
-    }
-
-    /// Replaces the law and resets its state.
-    pub(crate) fn configure(&mut self, law: L) {
-        self.law = law;
-        self.restart();
-    }
-
-    /// The state of the law.
-    pub fn state(&self) -> &L::State {
-        &self.state
-    }
-
-    /// Updates with `event`, which `stream` has just returned.
-    pub fn update<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Estimate {
-        match self.settle(stream, event) {
-            Some(estimate) => estimate,
-            None => self.learn(stream, event.flags),
-        }
-    }
-
-    /// The estimate of an event that brings no row, and what a loss of contact discards; `None` where there is a row to learn from.
-    pub(crate) fn settle<const N: usize>(&mut self, stream: &Stream<N>, event: &Event) -> Option<Estimate> {
-        if event.lost {
-            match stream.contact_loss {
-                ContactLoss::Everything => self.state = self.law.initial_state(),
-                ContactLoss::Memory => self.law.reset_memory(&mut self.state),
-                ContactLoss::Nothing => {}
-            }
-        }
-        if !event.reading.contact {
-            self.last = Estimate::UNKNOWN;
-            let units = stream.front_end.config().units;
-            return Some(Estimate {
-                innovation: event.reading.observation.force * units.force,
-                flags: Flags::NO_CONTACT | event.flags,
-                ..Estimate::NO_CONTACT
-            });
-        }
-        event.reading.restarted.then(|| Estimate {
-            innovation: 0.0,
-            flags: self.last.flags | event.flags | Flags::HELD,
-            ..self.last
-        })
-    }
-
-    /// Updates with the row that `stream` has just taken, in a contact that goes on.
-    #[inline(always)]
-    pub(crate) fn learn<const N: usize>(&mut self, stream: &Stream<N>, flags: Flags) -> Estimate {
-        let step = self.law.update(&mut self.state, stream.recent());
-        let estimate = stream.assessor.assess(&step);
-        self.last = Estimate { flags: estimate.flags | flags, ..estimate };
-        self.last
-    }
-}
-
-impl EstimatorState<CusumRls> {
-    /// [`Self::learn`] without the interval: K and B in SI, and the flags that need none.
-    #[inline(always)]
-    pub(crate) fn learn_estimate<const N: usize>(&mut self, stream: &Stream<N>, flags: Flags) -> (Impedance, Flags) {
-        let o = stream.recent().newest().unwrap_or_default();
-        let (fill, of_law) = self.law.learn(&mut self.state, &o);
-        let estimate = self.state.recursion.estimate;
-        let impedance = stream.assessor.in_si(estimate);
-        let flags = of_law | flags | IntervalEstimator::doubts(estimate, fill);
-        self.last = Estimate { impedance, fill, flags, ..Estimate::UNKNOWN };
-        (impedance, flags)
-    }
-
-    /// Half-widths of the 95 % intervals of what was learnt, in SI.
-    pub(crate) fn half_width<const N: usize>(&self, stream: &Stream<N>) -> Impedance {
-        stream.assessor.half_width_in_si(self.state.recursion.estimate, &self.law.confidence(&self.state))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The centre of a run of samples, the estimate that its residuals are taken about: which may be one, and when another suits better.
 
-use crate::block::integer_sums::ExactRun;
+use crate::block::exact_run::ExactRun;
 use crate::block::second_order::Moments;
 use crate::contact::Impedance;
 use crate::math::sym2::Sym2;

@@ -11,7 +11,8 @@
 
 use crate::block::centre::{is_moderate, suits_better};
 use crate::block::config::BlockConfig;
-use crate::block::integer_sums::{ExactRun, Scale, bits_for};
+use crate::block::exact_run::ExactRun;
+use crate::block::scale::{Scale, bits_for};
 use crate::block::second_order::{Moments, SecondOrderSums};
 use crate::block::second_use::SecondUse;
 use crate::block::window_sums::{CentredMoments, WindowSums};
