@@ -158,7 +158,7 @@ impl Search<'_> {
                 let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
                 grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest), rigid)));
             }
-            grown.retain(|fit| !is_at_end(fit) && !self.hurries(fit));
+            grown.retain(|fit| !is_at_end(fit) && !hurries(fit, &self.nominal));
             let grown = distinct(grown);
             sets.extend(grown.iter().cloned());
             let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE * fit.values.len() as f64;
@@ -193,16 +193,6 @@ impl Search<'_> {
         let all = grown.iter().filter(|fit| !is_at_end(fit)).chain([best]);
         let least = all.map(|fit| self.unexplained(fit)).fold(f64::INFINITY, f64::min);
         least > LINK_PART * self.unexplained(&self.nominal)
-    }
-
-    /// Whether `fit` has a link that wants the effort as early as a search allows, where the nominal law does not: that is no motion of two bodies, and
-    /// the effort of no drive acts a row before it is recorded.
-    fn hurries(&self, fit: &Fit) -> bool {
-        let is_earliest = |fit: &Fit| {
-            let (range, delay) = (fit.model.ranges()[index::DELAY], fit.values[index::DELAY]);
-            range.steps_between(range.low, delay) < 1e-9
-        };
-        fit.model.has_link() && is_earliest(fit) && !is_earliest(&self.nominal)
     }
 
     /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
@@ -361,6 +351,16 @@ fn distinct(mut fits: Vec<Fit>) -> Vec<Fit> {
     kept
 }
 
+/// Whether `fit` has a link that wants the effort as early as a search allows, where the `nominal` law does not: the effort of no drive acts a whole
+/// row before it is recorded, so that is no motion of two bodies.
+fn hurries(fit: &Fit, nominal: &Fit) -> bool {
+    let is_earliest = |fit: &Fit| {
+        let (range, delay) = (fit.model.ranges()[index::DELAY], fit.values[index::DELAY]);
+        range.steps_between(range.low, delay) < 1e-9
+    };
+    fit.model.has_link() && is_earliest(fit) && !is_earliest(nominal)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::levenberg_marquardt::Ended;
@@ -408,6 +408,24 @@ mod tests {
         // Nor is one that the rig file holds.
         let known = Search { nominal: creeping.clone(), ..search };
         assert_eq!(known.within_ends(both.clone(), &creeping).model, both.model);
+    }
+
+    #[test]
+    fn a_link_that_needs_an_effort_a_row_before_it_is_recorded_is_not_believed() {
+        let fit = |terms: Vec<Term>, delay: f64, own: &[f64]| Fit {
+            model: Model { terms, scales: SCALES },
+            values: [&[0.8, 4.0, delay, 0.0], own].concat(),
+            noise: Noise { ln_disturbance: -8.0, ln_encoder: -20.0 },
+            log_likelihood: 0.0,
+            ended: Ended::Converged,
+        };
+        let rigid = |delay: f64| fit(vec![], delay, &[]);
+        let linked = |delay: f64| fit(vec![Term::Compliance(Side::Load)], delay, &[4e3, 2.0, 0.5, 0.0]);
+        let earliest = -SCALES.period_s;
+        assert!(hurries(&linked(earliest), &rigid(0.0)));
+        assert!(!hurries(&linked(0.5 * earliest), &rigid(0.0)));
+        // Where the nominal law needs that as well, the record is early; and a rigid law has no more to explain it by.
+        assert!(!hurries(&linked(earliest), &rigid(earliest)) && !hurries(&rigid(earliest), &rigid(0.0)));
     }
 
     #[test]
