@@ -57,6 +57,8 @@ impl SimulatorProcess {
         let errors = File::create(&log).with_context(|| format!("cannot write {}", log.display()))?;
         let mut process = python
             .command(&script)
+            // What a simulator logs beside what it says, as MuJoCo does, lies here and not in the user's folder.
+            .current_dir(script.parent().unwrap_or(&script))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(errors)
