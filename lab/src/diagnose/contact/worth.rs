@@ -50,7 +50,11 @@ impl Search<'_> {
             part_of_force: self.part_of_force(taken),
             vuong: vuong(&logs(&rest.rows), &logs(&before.rows), block),
             left: rest.over_sensors,
-            left_before: before.over_sensors.max(left_where_they_differ(&before.rows, &rest.rows, rest.correlated_rows)),
+            left_before: before.over_sensors.max(left_where_they_differ(
+                &before.rows,
+                &rest.rows,
+                rest.correlated_rows,
+            )),
             price: self.price_of_value(&rest),
         }
     }

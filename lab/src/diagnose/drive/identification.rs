@@ -65,7 +65,7 @@ fn identify_between_pushes(
     }
     let values = &first.chosen.values;
     let law = DriveLaw {
-        effort_averaging: values[index::AVERAGING],
+        effort_averaging: first.chosen.model.law(values).effort_averaging,
         ..DriveLaw::nominal(rig.inertia, rig.viscous, values[index::DELAY])
     };
     let missing = missing_under(&first.trials, rig)?;

@@ -36,12 +36,17 @@ impl Model {
     pub fn ranges(&self) -> Vec<Range> {
         let scales = &self.scales;
         let viscous = (scales.effort / scales.speed).max(scales.viscous);
-        // A lag and a late recording of the same length are hardly told apart: beside a lag the effort acts no later than it is recorded.
-        let latest = if self.has("effort_lag") { 0.0 } else { scales.latest_effort_s };
+        // A lag and a late recording of the same length are hardly told apart: beside a lag the effort acts no later than it is recorded, and no earlier than a
+        // mean about its own row.
+        let (earliest, latest) = if self.has("effort_lag") {
+            (-0.5 * scales.period_s, 0.0)
+        } else {
+            (-scales.period_s, scales.latest_effort_s)
+        };
         let mut ranges = vec![
             Range::relative(scales.inertia / INERTIA_FACTOR, scales.inertia * INERTIA_FACTOR),
             Range::absolute(0.0, f64::INFINITY, 0.1 * viscous),
-            Range::absolute(-scales.period_s, latest, 0.3 * scales.period_s),
+            Range::absolute(earliest, latest, 0.3 * scales.period_s),
             Range::absolute(0.0, MOST_AVERAGING.value(), 0.1 * MOST_AVERAGING.value()),
         ];
         self.terms.iter().for_each(|term| ranges.extend(term.ranges(scales)));
@@ -66,7 +71,7 @@ impl Model {
     #[must_use]
     pub fn law(&self, values: &[f64]) -> DriveLaw {
         let mut law = DriveLaw {
-            effort_averaging: values[index::AVERAGING],
+            effort_averaging: self.part_averaged(values) * values[index::AVERAGING],
             ..DriveLaw::nominal(values[index::INERTIA], values[index::VISCOUS], values[index::DELAY])
         };
         let mut rest = &values[NOMINAL..];
@@ -76,6 +81,13 @@ impl Model {
             rest = others;
         }
         law
+    }
+
+    /// How much of the averaging among `values` acts: a mean about its own row is early by half a row, and what is recorded where it begins to act
+    /// is none. A mean that is free of that takes, beside a lag, the place of a delay. Zero has no sign.
+    #[must_use]
+    pub fn part_averaged(&self, values: &[f64]) -> f64 {
+        (-2.0 * values[index::DELAY] / self.scales.recorded_period_s).clamp(0.0, 1.0) + 0.0
     }
 
     /// Whether the inertia lies within what is believed of it: at an end it stands for something else.

@@ -82,6 +82,7 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
         travel,
         lowest,
         period_s: trials[0].period_s,
+        recorded_period_s: trials[0].recorded_period_s,
         latest_effort_s: latest_effort_s(trials[0].period_s),
         duration_s: largest(&DriveTrial::duration_s),
         inertia: rig.inertia,

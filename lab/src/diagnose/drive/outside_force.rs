@@ -195,6 +195,7 @@ mod tests {
         travel: 0.06,
         lowest: -0.03,
         period_s: 1e-3,
+        recorded_period_s: 1e-3,
         latest_effort_s: 0.02,
         duration_s: 20.0,
         inertia: 0.8,

@@ -15,6 +15,8 @@ pub struct Scales {
     pub lowest: f64,
     /// Median time between encoder rows, s.
     pub period_s: f64,
+    /// Median time between recorded rows, s.
+    pub recorded_period_s: f64,
     /// The latest effort that is a late recording and no physics, s.
     pub latest_effort_s: f64,
     /// Longest trial, s.

@@ -22,6 +22,7 @@ pub const SCALES: Scales = Scales {
     travel: 0.05,
     lowest: -0.025,
     period_s: 1e-3,
+    recorded_period_s: 1e-3,
     latest_effort_s: 0.02,
     duration_s: 3.0,
     inertia: 0.8,

@@ -273,6 +273,7 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         ci95: channel::told(fitted, ends),
     };
     let value = |at: usize| (values[at], ends[at]);
+    let averaged = outcome.chosen.model.part_averaged(values);
     let mut rows = vec![
         row(inertia, c.inertia_unit(), drive.inertia, outcome.inertia()),
         row("viscous", c.damping_unit(), drive.viscous, value(index::VISCOUS)),
@@ -281,8 +282,8 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
             name: "effort_averaging".to_owned(),
             unit: "1".to_owned(),
             given: 0.0,
-            fitted: values[index::AVERAGING],
-            ci95: channel::told(values[index::AVERAGING], ends[index::AVERAGING]),
+            fitted: averaged * values[index::AVERAGING],
+            ci95: channel::told(values[index::AVERAGING], ends[index::AVERAGING]).map(|end| averaged * end),
         },
     ];
     rows.extend(outcome.chosen.model.load_scale().map(|at| Nominal {
