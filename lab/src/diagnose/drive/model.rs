@@ -36,10 +36,10 @@ impl Model {
     pub fn ranges(&self) -> Vec<Range> {
         let scales = &self.scales;
         let viscous = (scales.effort / scales.speed).max(scales.viscous);
-        // A lag and a late recording of the same length are hardly told apart: beside a lag the effort acts no later than it is recorded, and no earlier than a
-        // mean about its own row.
+        // A lag and a late recording of the same length are hardly told apart: beside a lag the effort acts no later than it is recorded, and no
+        // earlier than that of a mean about its own row.
         let (earliest, latest) = if self.has("effort_lag") {
-            (-0.5 * scales.period_s, 0.0)
+            (-0.5 * scales.recorded_period_s, 0.0)
         } else {
             (-scales.period_s, scales.latest_effort_s)
         };
@@ -71,7 +71,7 @@ impl Model {
     #[must_use]
     pub fn law(&self, values: &[f64]) -> DriveLaw {
         let mut law = DriveLaw {
-            effort_averaging: self.part_averaged(values) * values[index::AVERAGING],
+            effort_averaging: values[index::AVERAGING] * self.part_averaged(values),
             ..DriveLaw::nominal(values[index::INERTIA], values[index::VISCOUS], values[index::DELAY])
         };
         let mut rest = &values[NOMINAL..];
@@ -154,5 +154,22 @@ impl Model {
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.terms.iter().any(|term| term.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::SCALES;
+    use super::*;
+
+    /// Half a row early it is a mean about its row, punctual or late it is none; beside a lag it is no earlier than that.
+    #[test]
+    fn an_effort_counts_as_averaged_as_far_as_it_is_recorded_early() {
+        let model = Model { terms: vec![], scales: SCALES };
+        let averaging = |rows: f64| model.law(&[0.8, 4.0, rows * SCALES.recorded_period_s, 0.2]).effort_averaging;
+        let found = [-1.0, -0.5, -0.25, 0.0, 3.0].map(averaging);
+        assert!(found.iter().zip([0.2, 0.2, 0.1, 0.0, 0.0]).all(|(found, by_hand)| (found - by_hand).abs() < 1e-15));
+        let delay = model.with(Term::EffortLag).ranges()[index::DELAY];
+        assert_eq!((delay.low, delay.high), (-0.5 * SCALES.recorded_period_s, 0.0));
     }
 }

@@ -1,11 +1,7 @@
 //! Which terms the recordings ask for: sets grown from the best few, and pruned.
 
 use super::candidates::{belongs, idle_friction, is_likelier, one_body, simpler, stribeck_for, tried, whole_friction};
-use super::criteria::{
-    BLOCK_ROWS, BLOCK_S, LEAST_FREE_SHAPE_PART, LEAST_GAIN_PER_VALUE, LEAST_PART_OF_ALL, LEAST_PART_OF_EFFORT,
-    LEAST_SHARE, LEAST_THROUGHOUT, LINK_PART, MOST_LEFT_OF_MOVED, MOST_OF_THE_REST, NEGLIGIBLE_PART,
-    NOISE_POWER_KNOWN_TO,
-};
+use super::criteria::{LEAST_GAIN_PER_VALUE, LEAST_PART_OF_EFFORT, LINK_PART, NEGLIGIBLE_PART};
 use super::filter::innovations;
 use super::fit::{Effort, Fit, fit};
 use super::law::Side;
@@ -14,8 +10,6 @@ use super::links;
 use super::model::{Model, index};
 use super::scales::Scales;
 use super::term::Term;
-use crate::diagnose::evidence::share_beyond_noise;
-use crate::diagnose::model_comparison::{clarke, vuong};
 
 /// What a search works on.
 pub struct Search<'a> {
@@ -43,27 +37,6 @@ pub struct Chosen {
     pub sets: Vec<Fit>,
 }
 
-/// What a larger model has over a smaller one.
-#[derive(Debug, Clone, Copy)]
-pub struct Worth {
-    /// Share of the unexplained power that it takes.
-    pub share: f64,
-    /// What it takes, in root mean square, over all that the nominal law leaves.
-    pub part_of_all: f64,
-    /// Whether the gain is there throughout: the larger of Vuong's and Clarke's statistic over blocks.
-    pub throughout: f64,
-}
-
-impl Worth {
-    /// Whether a term takes enough of what is left, and of all or of the rest; `is_free` where its shape is, `is_of_interest` where the rest is no
-    /// negligible part of the effort.
-    fn is_of_size(&self, is_free: bool, is_of_interest: bool) -> bool {
-        let least_part = if is_free { LEAST_FREE_SHAPE_PART } else { LEAST_PART_OF_ALL };
-        let takes_the_rest = self.share > MOST_OF_THE_REST && is_of_interest;
-        self.share > LEAST_SHARE && (self.part_of_all > least_part || takes_the_rest)
-    }
-}
-
 /// Sets that each round grows from.
 const BEAM: usize = 2;
 
@@ -77,50 +50,6 @@ const MOST_TERMS: usize = 4;
 const LINK_SEARCHES: usize = 2;
 
 impl Search<'_> {
-    /// Unexplained force of a fit in the common band, N or N m.
-    #[must_use]
-    pub fn unexplained(&self, fit: &Fit) -> f64 {
-        (2.0 * self.data.unexplained_density(&fit.model, &fit.noise) * self.band_hz).sqrt()
-    }
-
-    /// What `more` has over `less`.
-    #[must_use]
-    pub fn worth(&self, more: &Fit, less: &Fit) -> Worth {
-        let power = |fit: &Fit| self.unexplained(fit).powi(2);
-        let taken = (power(less) - power(more)).max(0.0);
-        let all = self.unexplained(&self.nominal).min(self.scales.effort);
-        let block = ((BLOCK_S / self.scales.period_s) as usize).max(BLOCK_ROWS);
-        let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
-        Worth {
-            share: share_taken(power(less), power(more), 2.0 * self.effort_noise_density * self.band_hz),
-            part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),
-            throughout: vuong(&rows[0], &rows[1], block).max(clarke(&rows[0], &rows[1], block)),
-        }
-    }
-
-    /// Whether `more` is worth its terms.
-    #[must_use]
-    pub fn is_worth(&self, more: &Fit, less: &Fit) -> bool {
-        let shapes = |fit: &Fit| fit.model.terms.iter().filter(|term| term.has_free_shape(&self.scales)).count();
-        let is_free = shapes(more) > shapes(less);
-        let worth = self.worth(more, less);
-        let is_of_interest = self.unexplained(less) > LEAST_PART_OF_EFFORT * self.scales.effort;
-        self.explains_rows(more, less)
-            && is_likelier(more, less)
-            && worth.is_of_size(is_free, is_of_interest)
-            && worth.throughout > LEAST_THROUGHOUT
-    }
-
-    /// Whether `more` explains rows at all: a law that leaves more than the whole effort follows the encoder's rows instead. Where hands
-    /// or a weight move more than the effort does, a rigid law does that leaves by one more term less than half of what `less` leaves; one
-    /// with a link can always follow.
-    fn explains_rows(&self, more: &Fit, less: &Fit) -> bool {
-        let is_one_more = more.model.told_terms() == less.model.told_terms() + 1;
-        let most =
-            if more.model.has_link() || !is_one_more { 0.0 } else { MOST_LEFT_OF_MOVED * self.unexplained(less) };
-        self.unexplained(more) < self.scales.effort.max(most)
-    }
-
     /// Smoothed disturbance of `fit`, a column a trial.
     #[must_use]
     pub fn disturbance(&self, fit: &Fit) -> Vec<Vec<f64>> {
@@ -309,15 +238,6 @@ impl Search<'_> {
     }
 }
 
-/// What a law takes, `left - held`, over what is left beyond the white `noise` of the recorded effort, which is not known better than
-/// [`NOISE_POWER_KNOWN_TO`]. Where more noise was recorded than the law leaves, a controller commanded it: it moved the drive, and none of it is left.
-#[must_use]
-pub fn share_taken(left: f64, held: f64, noise: f64) -> f64 {
-    let known_to = NOISE_POWER_KNOWN_TO.value();
-    let is_commanded = noise > (1.0 + known_to) * held;
-    share_beyond_noise(left, held, if is_commanded { 0.0 } else { noise.min(held) }, known_to)
-}
-
 fn is_at_end(fit: &Fit) -> bool {
     fit.model.is_at_end(&fit.values)
 }
@@ -426,34 +346,5 @@ mod tests {
         assert!(!hurries(&linked(0.5 * earliest), &rigid(0.0)));
         // Where the nominal law needs that as well, the record is early; and a rigid law has no more to explain it by.
         assert!(!hurries(&linked(earliest), &rigid(earliest)) && !hurries(&rigid(earliest), &rigid(0.0)));
-    }
-
-    #[test]
-    fn a_term_of_whatever_shape_is_told_that_takes_most_of_the_rest() {
-        let is_told = |share: f64, part_of_all: f64, is_free: bool, is_of_interest: bool| {
-            Worth { share, part_of_all, throughout: 10.0 }.is_of_size(is_free, is_of_interest)
-        };
-        // The exponent of grease beside dry friction, and a cogging of a robot's axis.
-        assert!(is_told(0.91, 0.185, true, true) && !is_told(0.64, 0.193, true, true));
-        // Friction beside a link; the same where nobody asks what is left.
-        assert!(is_told(0.9, 0.05, false, true) && !is_told(0.9, 0.05, false, false));
-        assert!(
-            is_told(0.3, 0.15, false, false) && !is_told(0.3, 0.15, true, false) && !is_told(0.2, 0.9, false, true)
-        );
-    }
-
-    /// By hand, in squares of one unit.
-    #[test]
-    fn a_term_takes_its_share_of_what_is_left_beyond_the_noise_of_the_effort() {
-        // Of 50 beyond a noise of 100 it takes 40; with no noise it would be 40 of 150.
-        assert!((share_taken(150.0, 110.0, 100.0) - 40.0 / 50.0).abs() < 1e-12);
-        assert!((share_taken(150.0, 110.0, 0.0) - 40.0 / 150.0).abs() < 1e-12);
-        // The noise is not known better than 44 of it.
-        assert!((share_taken(110.0, 101.0, 100.0) - 9.0 / 44.0).abs() < 1e-12);
-        // What the controller commands moves the drive and is not left.
-        assert!((share_taken(12.0, 10.0, 1000.0) - 2.0 / 12.0).abs() < 1e-12);
-        // Of noise that is told a little too large, all that is left is noise.
-        assert!((share_taken(12.0, 10.0, 14.0) - 2.0 / 4.4).abs() < 1e-12);
-        assert_eq!(share_taken(10.0, 11.0, 0.0), 0.0);
     }
 }

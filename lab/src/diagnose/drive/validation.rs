@@ -6,8 +6,9 @@ use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::{Uncertainty, intervals};
 use super::noise::Noise;
-use super::selection::{Search, share_taken};
+use super::selection::Search;
 use super::term::Term;
+use super::worth::share_taken;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 

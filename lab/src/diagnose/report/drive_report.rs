@@ -273,7 +273,8 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
         ci95: channel::told(fitted, ends),
     };
     let value = |at: usize| (values[at], ends[at]);
-    let averaged = outcome.chosen.model.part_averaged(values);
+    let part = outcome.chosen.model.part_averaged(values);
+    let averaging_ends = channel::told(values[index::AVERAGING], ends[index::AVERAGING]).map(|end| part * end);
     let mut rows = vec![
         row(inertia, c.inertia_unit(), drive.inertia, outcome.inertia()),
         row("viscous", c.damping_unit(), drive.viscous, value(index::VISCOUS)),
@@ -282,8 +283,8 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
             name: "effort_averaging".to_owned(),
             unit: "1".to_owned(),
             given: 0.0,
-            fitted: averaged * values[index::AVERAGING],
-            ci95: channel::told(values[index::AVERAGING], ends[index::AVERAGING]).map(|end| averaged * end),
+            fitted: averaging(&outcome.chosen),
+            ci95: averaging_ends,
         },
     ];
     rows.extend(outcome.chosen.model.load_scale().map(|at| Nominal {
@@ -296,6 +297,11 @@ fn nominal(outcome: &Outcome, rig: &Rig) -> Vec<Nominal> {
     rows
 }
 
+/// The averaging of the effort that acts in the law of `fit`.
+fn averaging(fit: &Fit) -> f64 {
+    fit.model.law(&fit.values).effort_averaging
+}
+
 /// Of the values that the report shows, of which some are not those of the fit: a pitch is one over a frequency.
 fn correlations(outcome: &Outcome, rig: &Rig) -> Option<Correlations> {
     let names: Vec<String> = nominal(outcome, rig).into_iter().map(|row| row.name).collect();
@@ -303,10 +309,9 @@ fn correlations(outcome: &Outcome, rig: &Rig) -> Option<Correlations> {
     let shown = |values: &[f64]| {
         let moved = Fit { values: values.to_vec(), ..fit.clone() };
         let ends = vec![[0.0; 2]; values.len()];
-        let at = [index::INERTIA, index::VISCOUS, index::DELAY, index::AVERAGING]
-            .into_iter()
-            .chain(outcome.chosen.model.load_scale());
-        let mut shown: Vec<(String, f64)> = names.iter().cloned().zip(at.map(|at| values[at])).collect();
+        let of_law = [values[index::INERTIA], values[index::VISCOUS], values[index::DELAY], averaging(&moved)];
+        let nominal = of_law.into_iter().chain(fit.model.load_scale().map(|at| values[at]));
+        let mut shown: Vec<(String, f64)> = names.iter().cloned().zip(nominal).collect();
         for effect in (0..fit.model.terms.len()).filter_map(|at| named(&moved, &ends, at)) {
             let parameters = effect.effect.spec().forms[effect.form].parameters.iter().zip(&effect.values);
             shown
