@@ -5,7 +5,7 @@ use super::criteria::{LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE, UNKNOWN_PART_
 use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::Fit;
 use super::held_out::{Folds, missing_forces, rms};
-use super::lack_of_fit::{a_curve_does_better, a_friction_that_changes_does_better};
+use super::lack_of_fit::{a_shape_does_better, has_a_shape};
 use super::model::index;
 use super::outcome::Outcome;
 use super::selection::{Chosen, Search};
@@ -27,7 +27,8 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     let Validated { fit, held_out, named, uncertainty } = validated(search, &folds, &common, chosen.fit.clone());
     let expected_noise = expected_noise(data, &fit, &common, seed);
     let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed));
-    let verdict = verdict(search, &fit, [rms(&given), rms(&refitted.missing), rms(&held_out.missing)], recorded_noise);
+    let missing = [given, refitted.missing.clone(), held_out.missing];
+    let verdict = verdict(search, &fit, &missing, recorded_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
         trials: Vec::new(),
@@ -36,7 +37,7 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         covariance: uncertainty.covariance,
         named,
         alternatives,
-        missing: [given, refitted.missing, held_out.missing],
+        missing,
         expected_noise,
         band_hz: search.band_hz,
         nominal: search.nominal.clone(),
@@ -58,19 +59,22 @@ fn as_given(search: &Search<'_>) -> Fit {
     given
 }
 
-fn verdict(search: &Search<'_>, fit: &Fit, [given, refitted, improved]: [f64; 3], noise: f64) -> Verdict {
+fn verdict(search: &Search<'_>, fit: &Fit, missing: &[Vec<Vec<f64>>; 3], noise: f64) -> Verdict {
+    let [given, refitted, improved] = missing.each_ref().map(|columns| rms(columns));
     let above = |rms: f64| (rms * rms - noise * noise).max(0.0).sqrt();
     let effort = search.scales.effort;
     if fit.model == search.nominal.model {
-        let is_unknown = refitted > OVER_NOISE * noise && above(refitted) > UNKNOWN_PART_OF_EFFORT * effort;
+        // What has a shape is there, however little it is; of what has none a part is the model's own.
+        let is_unknown = refitted > OVER_NOISE * noise && above(refitted) > UNKNOWN_PART_OF_EFFORT * effort
+            || has_a_shape(search, &missing[1]);
         return match (is_unknown, given > VALUES_MATTER * refitted && above(given) > LEAST_PART_OF_EFFORT * effort) {
             (true, _) => Verdict::Unknown,
             (false, true) => Verdict::Parameters,
             (false, false) => Verdict::NoMismatch,
         };
     }
-    let is_left = improved > OVER_NOISE * noise
-        && (above(improved) > MOST_LEFT * above(refitted) || a_curve_does_better(search, fit, noise))
-        || a_friction_that_changes_does_better(search, fit, noise);
+    let is_notable = improved > OVER_NOISE * noise;
+    let is_left = is_notable && above(improved) > MOST_LEFT * above(refitted)
+        || a_shape_does_better(search, fit, &missing[2], is_notable, noise);
     if is_left { Verdict::PartlyExplained } else { Verdict::Explained }
 }

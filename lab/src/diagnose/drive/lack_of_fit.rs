@@ -1,41 +1,73 @@
-//! Whether a law that can be anything along one quantity does much better than the one that is named: then that is not all of it.
+//! Whether a force that can be anything along one quantity does much better than the law that was found: then that is not all of it.
 
 use super::candidates::is_likelier;
+use super::course::{Along, Varying};
 use super::criteria::{CURVE_PART, LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE};
 use super::fit::Fit;
-use super::law::Along;
+use super::held_out::rms;
 use super::selection::Search;
 use super::term::Term;
+use super::tone::loudest_tone;
 
 /// Knots of the free curve over position.
 const CURVE_KNOTS: usize = 24;
 
-/// Whether a load by position of no law takes most of what the terms of `fit` leave, where that is much: then they are not all of it.
-#[must_use]
-pub fn a_curve_does_better(search: &Search<'_>, fit: &Fit, noise: f64) -> bool {
-    let scales = &search.scales;
-    let spacing = scales.travel / (CURVE_KNOTS - 1) as f64;
-    let curve = Term::Curve { origin: scales.lowest, spacing, count: CURVE_KNOTS };
-    leaves_much(search, fit) && is_halved_by(search, fit, curve, CURVE_KNOTS, noise)
-}
-
-/// Knots of a course of friction over the time of a trial: what warms up or wears does so slowly.
+/// Knots of a course over the time of a trial: what warms up or wears does so slowly.
 const TIME_KNOTS: usize = 6;
 
-/// Whether dry friction that changes with time or place takes most of what the same friction leaves where it is always the same, where that
-/// is much: then it is not the physics of this drive.
+/// A force in root mean square before and after something takes a part of it, N or N m.
+type Lessened = [f64; 2];
+
+/// Whether a force that has a shape, but no law, takes half of the power that the nominal law leaves, and more than a negligible part of the effort: a
+/// mismatch that is there, however little it is beside the effort. `missing` is what that law leaves, a column a trial.
 #[must_use]
-pub fn a_friction_that_changes_does_better(search: &Search<'_>, fit: &Fit, noise: f64) -> bool {
-    if !fit.model.terms.iter().any(Term::is_friction) || !leaves_much(search, fit) {
-        return false;
-    }
-    let scales = &search.scales;
-    let over = |along: Along, origin: f64, length: f64, count: usize| {
-        let course = Term::FrictionCourse { along, origin, spacing: length / (count - 1) as f64, count };
-        is_halved_by(search, fit, course, count, noise)
+pub fn has_a_shape(search: &Search<'_>, missing: &[Vec<f64>]) -> bool {
+    let nominal = &search.nominal;
+    let takes_half = |[left, after]: Lessened| {
+        let taken = left * left - after * after;
+        taken > after * after && taken.sqrt() > LEAST_PART_OF_EFFORT * search.scales.effort
     };
-    over(Along::Time, 0.0, scales.duration_s, TIME_KNOTS)
-        || over(Along::Place, scales.lowest, scales.travel, CURVE_KNOTS)
+    leaves_much(search, nominal)
+        && (takes_half(by_a_tone(missing))
+            || takes_half(by(search, nominal, curve(search)))
+            || courses(search, nominal).any(|course| takes_half(by(search, nominal, course))))
+}
+
+/// Whether a shape of no law does much better than the names of `fit`, which leave the force `missing`, a column a trial: a load by position or a
+/// tone, where that `is_notable` beside the sensors' `noise`, or friction, or an effort, that changes with time or place. Then they are not all of it.
+#[must_use]
+pub fn a_shape_does_better(search: &Search<'_>, fit: &Fit, missing: &[Vec<f64>], is_notable: bool, noise: f64) -> bool {
+    let halves = |[left, after]: Lessened| is_halved(left, after, noise);
+    leaves_much(search, fit)
+        && (is_notable && (halves(by_a_tone(missing)) || halves(by(search, fit, curve(search))))
+            || courses(search, fit).any(|course| halves(by(search, fit, course))))
+}
+
+/// A load by position.
+fn curve(search: &Search<'_>) -> Term {
+    let scales = &search.scales;
+    let spacing = scales.travel / (CURVE_KNOTS - 1) as f64;
+    Term::Curve { origin: scales.lowest, spacing, count: CURVE_KNOTS }
+}
+
+/// Friction and effort that change, of those that `fit` has.
+fn courses(search: &Search<'_>, fit: &Fit) -> impl Iterator<Item = Term> {
+    let scales = search.scales;
+    let rubs = fit.model.terms.iter().any(Term::is_friction);
+    let all = [
+        (Varying::DryFriction, Along::Time),
+        (Varying::DryFriction, Along::Place),
+        (Varying::ViscousFriction, Along::Time),
+        (Varying::ViscousFriction, Along::Place),
+        (Varying::Effort, Along::Time),
+    ];
+    all.into_iter().filter(move |(of, _)| rubs || *of != Varying::DryFriction).map(move |(of, along)| {
+        let (origin, length, count) = match along {
+            Along::Time => (0.0, scales.duration_s, TIME_KNOTS),
+            Along::Place => (scales.lowest, scales.travel, CURVE_KNOTS),
+        };
+        Term::Course { of, along, origin, spacing: length / (count - 1) as f64, count }
+    })
 }
 
 /// Whether `fit`, of a rigid drive, leaves so much of what the nominal law lacks, and of the effort, that its names are doubted.
@@ -46,17 +78,25 @@ fn leaves_much(search: &Search<'_>, fit: &Fit) -> bool {
         && left > LEAST_PART_OF_EFFORT * search.scales.effort
 }
 
-/// Whether `term` of no law, with `count` knots, takes half of what `fit` leaves beyond the sensors' `noise`, in root mean square: no term
-/// takes that noise. It is no more than what any law leaves, and where that is all, `fit` has to leave notably more.
-fn is_halved_by(search: &Search<'_>, fit: &Fit, term: Term, count: usize, noise: f64) -> bool {
+/// What `term` of no law takes of what `fit` leaves unexplained; nothing where it is not likelier.
+fn by(search: &Search<'_>, fit: &Fit, term: Term) -> Lessened {
     let mut start = fit.clone();
+    let count = term.ranges(&search.scales).len();
     start.model.terms.push(term);
     start.values.extend(vec![0.0; count]);
     let better = search.polished(&start);
-    is_likelier(&better, fit) && is_halved(search.unexplained(fit), search.unexplained(&better), noise)
+    let left = search.unexplained(fit);
+    [left, if is_likelier(&better, fit) { search.unexplained(&better) } else { left }]
 }
 
-/// Whether of `left` beyond `noise` half is gone in what is left `after`, all root mean squares.
+/// What a single tone in time, of no law of a motion, takes of the force `missing`, a column a trial.
+fn by_a_tone(missing: &[Vec<f64>]) -> Lessened {
+    let left = rms(missing);
+    [left, (left * left - loudest_tone(missing)).max(0.0).sqrt()]
+}
+
+/// Whether of `left` beyond `noise` half is gone in what is left `after`, all root mean squares: no term takes that noise. It is no more than what
+/// any law leaves, and where that is all, there has to be notably more.
 fn is_halved(left: f64, after: f64, noise: f64) -> bool {
     let noise = noise.min(after);
     let beyond = |all: f64| (all * all - noise * noise).sqrt();

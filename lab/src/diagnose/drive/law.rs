@@ -4,6 +4,8 @@
 
 pub use crate::rig::TransmissionSide as Side;
 
+use super::course::Course;
+use super::curve::Curve;
 use super::dry_friction::DryFriction;
 use super::presliding::{Slips, Step};
 
@@ -52,60 +54,6 @@ impl Periodic {
     }
 }
 
-/// A load by position, straight between knots, and constant beyond them.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct PositionCurve {
-    /// Position of the first knot.
-    pub origin: f64,
-    /// Distance of two knots.
-    pub spacing: f64,
-    /// Load at each knot, N or N m; none: no load.
-    pub knots: Vec<f64>,
-}
-
-impl PositionCurve {
-    fn at(&self, position: f64) -> f64 {
-        let (Some(first), Some(last)) = (self.knots.first(), self.knots.last()) else { return 0.0 };
-        let along = (position - self.origin) / self.spacing;
-        if along <= 0.0 {
-            return *first;
-        }
-        let knot = along as usize;
-        if knot + 1 >= self.knots.len() {
-            return *last;
-        }
-        let part = along - knot as f64;
-        self.knots[knot] * (1.0 - part) + self.knots[knot + 1] * part
-    }
-}
-
-/// What a friction that changes changes with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Along {
-    /// Time since the trial's first row.
-    #[default]
-    Time,
-    /// Position.
-    Place,
-}
-
-/// By how much dry friction is more, as a share of itself, of no law.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct FrictionCourse {
-    /// What it changes with.
-    pub along: Along,
-    /// The share, straight between knots over that; no knots: none.
-    pub curve: PositionCurve,
-}
-
-impl FrictionCourse {
-    /// What friction is multiplied by `time` seconds after the first row, at `position`.
-    #[must_use]
-    pub fn factor(&self, time: f64, position: f64) -> f64 {
-        1.0 + self.curve.at(if self.along == Along::Time { time } else { position })
-    }
-}
-
 /// What acts on a body through a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Acting {
@@ -115,6 +63,8 @@ pub struct Acting {
     pub force: f64,
     /// What dry friction is multiplied by.
     pub friction_factor: f64,
+    /// What viscous friction is multiplied by.
+    pub viscous_factor: f64,
 }
 
 /// The law with its values.
@@ -137,14 +87,14 @@ pub struct DriveLaw {
     pub load_scale: f64,
     /// Dry friction, on the motor's side.
     pub friction: DryFriction,
-    /// How dry friction changes, of no law.
-    pub friction_course: FrictionCourse,
+    /// How friction or effort changes, of no law.
+    pub course: Course,
     /// Constant load, N or N m.
     pub offset: f64,
     /// Loads that repeat along the way: gravity by angle, cogging.
     pub periodic: Vec<Periodic>,
     /// Load by position, of no law.
-    pub curve: PositionCurve,
+    pub curve: Curve,
     /// What the force sensor shows too much, as a share of the force.
     pub force_gain_error: f64,
     /// By how much the force is recorded later than it acts, s.
@@ -171,10 +121,10 @@ impl DriveLaw {
             effort_limit: f64::INFINITY,
             load_scale: 1.0,
             friction: DryFriction::NONE,
-            friction_course: FrictionCourse::default(),
+            course: Course::default(),
             offset: 0.0,
             periodic: Vec::new(),
-            curve: PositionCurve::default(),
+            curve: Curve::default(),
             force_gain_error: 0.0,
             force_delay_s: 0.0,
             tool_inertia: 0.0,
@@ -194,16 +144,17 @@ impl DriveLaw {
     #[must_use]
     pub fn advance(&self, state: [f64; 2], slips: &mut Slips, acting: &Acting, inertia: f64, step: f64) -> [f64; 2] {
         let [mut position, mut velocity] = state;
-        let Acting { push, force, friction_factor } = *acting;
+        let Acting { push, force, friction_factor, viscous_factor } = *acting;
+        let viscous = viscous_factor * self.viscous;
         let push = push - self.load(position + 0.5 * step * velocity);
         if !self.friction.acts() {
-            let middle = velocity + 0.5 * step * (push - self.viscous * velocity) / inertia;
-            let after = velocity + step * (push - self.viscous * middle) / inertia;
+            let middle = velocity + 0.5 * step * (push - viscous * velocity) / inertia;
+            let after = velocity + step * (push - viscous * middle) / inertia;
             return [position + 0.5 * step * (velocity + after), after];
         }
         if self.friction.presliding > 0.0 {
             let level = friction_factor * self.friction.level(velocity.abs(), force);
-            let step = Step { velocity, push, viscous: self.viscous, inertia, duration: step };
+            let step = Step { velocity, push, viscous, inertia, duration: step };
             let [way, after] = slips.advance(level, self.friction.presliding, &step);
             return [position + way, after];
         }
@@ -212,7 +163,7 @@ impl DriveLaw {
         for _ in 0..TURNS_PER_ROW {
             let Some(direction) = Self::direction(velocity, push, level(0.0)) else { return [position, 0.0] };
             let rate = |speed: f64| {
-                let against = direction * level(speed.abs()) + self.viscous * speed;
+                let against = direction * level(speed.abs()) + viscous * speed;
                 (push - against) / inertia
             };
             let middle = velocity + 0.5 * left * rate(velocity);
@@ -252,7 +203,7 @@ mod tests {
     }
 
     fn pushed(push: f64) -> Acting {
-        Acting { push, force: 0.0, friction_factor: 1.0 }
+        Acting { push, force: 0.0, friction_factor: 1.0, viscous_factor: 1.0 }
     }
 
     #[test]
@@ -302,11 +253,5 @@ mod tests {
         assert_eq!(link.transmitted(0.009, 5.0), 0.0);
         assert!((link.transmitted(0.03, 1.0) - (100.0 * 0.02 + 2.0)).abs() < 1e-12);
         assert!((link.transmitted(-0.03, 0.0) + 100.0 * 0.02).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_curve_is_straight_between_knots_and_constant_beyond() {
-        let curve = PositionCurve { origin: 1.0, spacing: 0.5, knots: vec![2.0, 4.0, 3.0] };
-        assert_eq!([0.0, 1.25, 1.5, 1.75, 9.0].map(|x| curve.at(x)), [2.0, 3.0, 4.0, 3.5, 3.0]);
     }
 }

@@ -54,7 +54,7 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
             (1, vec![(values[0], ends[0]), of_motor(2), damping_ratio, of_motor(3)])
         }
         Term::Play(_) => (1, vec![(values[3], ends[3]), of_motor(2), (values[0], ends[0]), of_motor(4)]),
-        Term::Presliding | Term::LoadScale | Term::FrictionCourse { .. } | Term::Curve { .. } => return None,
+        Term::Presliding | Term::LoadScale | Term::Course { .. } | Term::Curve { .. } => return None,
     };
     let (values, intervals) = all.into_iter().unzip();
     Some(NamedEffect { effect: find(term.name())?, form, values, intervals })

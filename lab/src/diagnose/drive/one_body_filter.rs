@@ -3,6 +3,7 @@
 //! One body has a linear covariance, so its Kalman gains are those of mass, viscous friction and disturbance; friction at rest and
 //! position-dependent loads act on the mean alone (innovations form, Ljung, *System Identification*, 1999, section 4.3).
 
+use super::course::Varying;
 use super::innovations::Innovations;
 use super::input::Inputs;
 use super::law::{Acting, DriveLaw};
@@ -105,8 +106,13 @@ pub fn one_body(
         } else {
             let step = trial.time[row] - trial.time[row - 1];
             let force = inputs.force[row];
-            let friction_factor = law.friction_course.factor(trial.time[row] - trial.time[0], state[0]);
-            let acting = Acting { push: inputs.effort[row] - force, force, friction_factor };
+            let factor = |of| law.course.factor(of, trial.time[row] - trial.time[0], state[0]);
+            let acting = Acting {
+                push: factor(Varying::Effort) * inputs.effort[row] - force,
+                force,
+                friction_factor: factor(Varying::DryFriction),
+                viscous_factor: factor(Varying::ViscousFriction),
+            };
             state = law.advance(state, &mut slips, &acting, inertia, step);
             let innovation = trial.position[row] - state[0];
             let gain = gains.gain[row];

@@ -1,9 +1,11 @@
 //! What a model of the drive can hold beyond mass and viscous friction, and the values that each term brings.
 
+use super::course::{Along, Course, Varying};
 use super::criteria::{
     LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT, MOST_LOAD_SHARE, SLOWEST_SWING,
 };
-use super::law::{Along, DriveLaw, FrictionCourse, Link, Periodic, PositionCurve, Side};
+use super::curve::Curve;
+use super::law::{DriveLaw, Link, Periodic, Side};
 use super::range::{Prior, Range};
 use super::scales::Scales;
 
@@ -42,8 +44,10 @@ pub enum Term {
     ToolInertia,
     /// A factor of the load that a rigid-body model explains: a value of the rig file and no effect.
     LoadScale,
-    /// Dry friction that changes, of no law, by `count` knots.
-    FrictionCourse {
+    /// Friction or effort that changes, of no law, by `count` knots.
+    Course {
+        /// What changes.
+        of: Varying,
         /// What it changes with.
         along: Along,
         /// First knot, s after the first row, or m or rad.
@@ -96,7 +100,7 @@ impl Term {
             Self::ForceDelay => "channel_delay",
             Self::ToolInertia => "tool_inertia",
             Self::LoadScale => "load_scale",
-            Self::FrictionCourse { .. } => "friction_course",
+            Self::Course { .. } => "course",
             Self::Curve { .. } => "learned",
         }
     }
@@ -180,7 +184,7 @@ impl Term {
                 let range = Range::absolute(1.0 - worst, 1.0 + worst, 0.1 * deviation);
                 vec![range.known(Prior { mean: 1.0, deviation })]
             }
-            Self::FrictionCourse { count, .. } => vec![Range::absolute(-1.0, f64::INFINITY, 0.1); *count],
+            Self::Course { count, .. } => vec![Range::absolute(-1.0, f64::INFINITY, 0.1); *count],
             Self::Curve { count, .. } => vec![any; *count],
         }
     }
@@ -193,11 +197,15 @@ impl Term {
     }
 
     /// Whether the 95 % interval of a value that makes it what it is, of those in `ends`, is all of the value's range: the recordings do not
-    /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923).
+    /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923). Or reaches zero, where that is none (A. Wald,
+    /// *Trans. Am. Math. Soc.* 54, 1943).
     #[must_use]
     pub fn is_undetermined(&self, ends: &[[f64; 2]], scales: &Scales) -> bool {
         let ranges = self.ranges(scales);
-        self.telling(scales).iter().any(|at| ends[*at][0] <= ranges[*at].low && ends[*at][1] >= ranges[*at].high)
+        self.telling(scales).iter().any(|at| {
+            let ([low, high], range) = (ends[*at], &ranges[*at]);
+            low <= range.low && (range.low == 0.0 || high >= range.high)
+        })
     }
 
     /// Which of its values make it what it is.
@@ -273,12 +281,12 @@ impl Term {
             Self::ForceDelay => law.force_delay_s = values[0],
             Self::ToolInertia => law.tool_inertia = values[0],
             Self::LoadScale => law.load_scale = values[0],
-            Self::FrictionCourse { along, origin, spacing, .. } => {
-                let curve = PositionCurve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
-                law.friction_course = FrictionCourse { along: *along, curve };
+            Self::Course { of, along, origin, spacing, .. } => {
+                let curve = Curve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
+                law.course = Course { of: *of, along: *along, curve };
             }
             Self::Curve { origin, spacing, .. } => {
-                law.curve = PositionCurve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
+                law.curve = Curve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
             }
         }
     }
@@ -302,6 +310,17 @@ mod tests {
         assert!(!Term::Stribeck.is_at_end(&[0.5 * excess, excess, speed], &SCALES));
         // Without an excess it is Coulomb friction.
         assert!(Term::Stribeck.is_at_end(&[excess, 0.0, speed], &SCALES));
+    }
+
+    /// An excess whose level where it moves may be none is an encoder that stands still.
+    #[test]
+    fn a_friction_whose_interval_holds_zero_is_not_shown() {
+        let [level, excess, speed] = [[0.0, 0.3], [0.5, 0.6], [0.1 * SCALES.speed, 0.2 * SCALES.speed]];
+        assert!(Term::Stribeck.is_undetermined(&[level, excess, speed], &SCALES));
+        assert!(!Term::Stribeck.is_undetermined(&[[0.1, 0.3], excess, speed], &SCALES));
+        assert!(Term::Coulomb.is_undetermined(&[[0.0, 0.3]], &SCALES));
+        // A load has either sign.
+        assert!(!Term::ConstantLoad.is_undetermined(&[[0.0, 0.3]], &SCALES));
     }
 
     /// Where the mass sits makes a link what it is; its damping and its friction do not.

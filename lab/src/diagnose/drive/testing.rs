@@ -47,6 +47,10 @@ pub struct TestDrive {
     pub ripple: f64,
     /// N, constant load.
     pub load: f64,
+    /// N, a force at 7.3 Hz, whatever the drive does.
+    pub tone: f64,
+    /// Share of the viscous friction by which it is more at the start of a trial, and less and less from there, within 2 s.
+    pub cold: f64,
     /// N^2 s, density of a white force.
     pub disturbance: f64,
     /// m, deviation of the encoder's white noise.
@@ -88,6 +92,8 @@ impl TestDrive {
         root: 0.0,
         ripple: 0.0,
         load: 0.0,
+        tone: 0.0,
+        cold: 0.0,
         disturbance: 0.0,
         encoder: 5e-6,
         effort_noise: 0.0,
@@ -142,11 +148,13 @@ impl TestDrive {
                     load_v += step * (passed - on_load * load_v) / (link.load_share * self.mass);
                     load_x += step * load_v;
                 }
+                let tone = self.tone * (std::f64::consts::TAU * 7.3 * t + seed as f64).sin();
+                let viscous = self.viscous * (1.0 + self.cold * (-0.5 * t).exp());
                 let root = self.root * v.signum() * (v.abs() / 0.1).sqrt();
                 let ripple = self.ripple * (std::f64::consts::TAU * x / 5e-3).sin();
                 let dry = root + bristle;
                 let free = v + step
-                    * (drives - passed - dry - ripple - (self.viscous - on_load) * v - self.load + white)
+                    * (drives - passed - dry - ripple - (viscous - on_load) * v - self.load + tone + white)
                     / motor;
                 let at_once = if self.presliding > 0.0 { 0.0 } else { self.coulomb };
                 let held = step * at_once / motor;

@@ -73,7 +73,7 @@ pub fn advance_pair(
         let stretch_rate = motor_rate - (mid - braked) / load;
         let passed = link.transmitted(ahead + pair.curving * stretch_rate, middle_v - middle_load_v);
         coupled += usize::from(ahead.abs() >= 0.5 * link.play);
-        let acting = Acting { push: effort - passed, force, friction_factor: 1.0 };
+        let acting = Acting { push: effort - passed, force, friction_factor: 1.0, viscous_factor: 1.0 };
         let [x, v] = law.advance([x, v], slips, &acting, motor, short);
         let after = load_v + short * (passed - braked) / load;
         *state = [x, v, load_x + 0.5 * short * (load_v + after), after];
