@@ -9,7 +9,7 @@
 //! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
 //! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
 //! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`], [`links`] and [`selection`] choose what stands beside it by
-//! its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`] and [`alternatives`] are the evidence, of which
+//! its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`], [`noise_at_rest`] and [`alternatives`] are the evidence, of which
 //! [`judgement`] makes the [`outcome`]; [`outside_force`] finds stretches in which something else pushes, and [`identification`] is the
 //! way from trials to the answer.
 
@@ -40,6 +40,7 @@ pub mod missing_force;
 pub mod model;
 pub mod named;
 pub mod noise;
+pub mod noise_at_rest;
 pub mod noise_search;
 pub mod nominal;
 pub mod one_body_filter;

@@ -92,6 +92,8 @@ fn unaveraged<'a>(time: &[f64], averaged: &'a [f64], spread: f64) -> Cow<'a, [f6
 struct Integral<'a> {
     time: &'a [f64],
     values: Vec<f64>,
+    /// How far the mean of a sampled signal over the interval before each row lies below that of its ends.
+    bend: Vec<f64>,
     total: Vec<f64>,
     held: bool,
 }
@@ -102,18 +104,21 @@ impl<'a> Integral<'a> {
         Self::new(time, values.collect(), true)
     }
 
-    /// Of a signal that runs straight from each value to the next, as a sampled force.
+    /// Of a signal that is sampled, as a force: a parabola through the two rows about an interval and the one before, and one through those and the
+    /// one after, in the mean (the open rule of four ordinates, A. N. Krylov). Straight lines lose a fifteenth of what swings in seven rows.
     fn sampled(time: &'a [f64], values: impl Iterator<Item = f64>) -> Self {
         Self::new(time, values.collect(), false)
     }
 
     fn new(time: &'a [f64], values: Vec<f64>, held: bool) -> Self {
         let mut total = vec![0.0; time.len()];
+        let bend: Vec<f64> =
+            if held { Vec::new() } else { (0..time.len()).map(|row| bend(time, &values, row)).collect() };
         for row in 1..time.len() {
-            let level = if held { values[row - 1] } else { 0.5 * (values[row - 1] + values[row]) };
+            let level = if held { values[row - 1] } else { 0.5 * (values[row - 1] + values[row]) - bend[row] };
             total[row] = total[row - 1] + level * (time[row] - time[row - 1]);
         }
-        Self { time, values, total, held }
+        Self { time, values, bend, total, held }
     }
 
     /// Moves `row` to the last one that is not after `at`, or to the first.
@@ -136,8 +141,12 @@ impl<'a> Integral<'a> {
         if self.held || since <= 0.0 || *row == last {
             return self.total[*row] + level * since;
         }
-        let slope = (next - level) / (self.time[*row + 1] - self.time[*row]);
-        self.total[*row] + since * (level + 0.5 * slope * since)
+        let interval = self.time[*row + 1] - self.time[*row];
+        let slope = (next - level) / interval;
+        let part = since / interval;
+        // Below the line by a parabola that is none at both ends.
+        let below = self.bend[*row + 1] * interval * part * part * (3.0 - 2.0 * part);
+        self.total[*row] + since * (level + 0.5 * slope * since) - below
     }
 
     /// Mean over each interval of `rows`, moved by `shift` seconds.
@@ -175,6 +184,27 @@ impl<'a> Integral<'a> {
     }
 }
 
+/// How far the mean over the interval before `row` lies below that of its ends by the second difference about it: a twelfth of what a parabola through
+/// equal steps has. At an end, or beside a gap, none.
+fn bend(time: &[f64], values: &[f64], row: usize) -> f64 {
+    if row < 2 || row + 1 >= time.len() {
+        return 0.0;
+    }
+    let step = |row: usize| time[row] - time[row - 1];
+    if [row - 1, row, row + 1]
+        .iter()
+        .any(|at| step(*at) > MOST_UNEVEN * step(row) || step(row) > MOST_UNEVEN * step(*at))
+    {
+        return 0.0;
+    }
+    let slope = |row: usize| (values[row] - values[row - 1]) / step(row);
+    let curvature = (slope(row + 1) - slope(row - 1)) / (0.5 * step(row + 1) + step(row) + 0.5 * step(row - 1));
+    curvature * step(row).powi(2) / 12.0
+}
+
+/// Factor between neighbouring steps from which there is a gap, over which nothing is known of a bend.
+const MOST_UNEVEN: f64 = 2.5;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -201,12 +231,31 @@ mod tests {
     }
 
     #[test]
-    fn a_sampled_signal_is_integrated_along_straight_lines() {
+    fn a_sampled_signal_is_integrated_along_straight_lines_at_its_ends_and_beside_gaps() {
         let time = [0.0, 1.0, 3.0];
         let sampled = Integral::sampled(&time, [0.0, 2.0, 6.0].into_iter());
         assert_eq!(sampled.means(&time, 0.0), [0.0, 1.0, 4.0]);
         // From 0.5 to 1.5: the line reaches 1, 2 and 3; its mean over both halves is 2.
         assert!((sampled.means(&[0.5, 1.5], 0.0)[1] - 2.0).abs() < 1e-15);
+        let gap = Integral::sampled(&[0.0, 1.0, 2.0, 12.0, 13.0, 14.0], [0.0, 0.0, 4.0, 4.0, 0.0, 0.0].into_iter());
+        assert_eq!(gap.means(&[1.0, 2.0, 12.0, 13.0], 0.0), [0.0, 2.0, 4.0, 2.0]);
+    }
+
+    /// sin(w t) by seven rows a period: the mean over an interval is the difference of its integral, from any instant.
+    #[test]
+    fn what_swings_in_seven_rows_is_integrated_to_a_hundredth() {
+        let swing = std::f64::consts::TAU / 7.0;
+        let time: Vec<f64> = (0..60).map(f64::from).collect();
+        let sampled = Integral::sampled(&time, time.iter().map(|t| (swing * t).sin()));
+        for shift in [0.0, 0.3] {
+            let means = sampled.means(&time, shift);
+            for row in 5..50 {
+                let [from, to] = [time[row - 1] + shift, time[row] + shift];
+                let exact = ((swing * from).cos() - (swing * to).cos()) / swing;
+                // Of the rule's own error (w dt)^4 11 / 720 is left, 0.0099; between rows the bend's own shape is one of the third degree.
+                assert!((means[row] - exact).abs() < 0.015, "{row} {shift}: {} {exact}", means[row]);
+            }
+        }
     }
 
     /// 3 N for half a second, then nothing, recorded each 10 ms.

@@ -7,6 +7,7 @@ use super::fit::Fit;
 use super::held_out::{Folds, missing_forces, rms};
 use super::lack_of_fit::{a_shape_does_better, has_a_shape};
 use super::model::index;
+use super::noise_at_rest::noise_at_rest;
 use super::outcome::Outcome;
 use super::selection::{Chosen, Search};
 use super::validation::{Validated, validated};
@@ -26,8 +27,10 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     let refitted = folds.held_out(data, &search.nominal, &common);
     let Validated { fit, held_out, named, uncertainty } = validated(search, &folds, &common, chosen.fit.clone());
     let expected_noise = expected_noise(data, &fit, &common, seed);
-    let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed));
     let missing = [given, refitted.missing.clone(), held_out.missing];
+    let at_rest =
+        noise_at_rest(data.trials, &missing[2], search.band_hz, search.scales.resolution, search.scales.travel);
+    let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed)).max(at_rest.unwrap_or(0.0));
     let verdict = verdict(search, &fit, &missing, recorded_noise);
     let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
