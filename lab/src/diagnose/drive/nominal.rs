@@ -123,11 +123,8 @@ fn latest_effort_s(period_s: f64) -> f64 {
     of_rows.max(LATEST_S.value()).min(3.0 * of_rows)
 }
 
-/// Part of a recorded row by which an effort may be late by its clock alone: what acts in the next row is half a row late in the mean.
-const CLOCKS_PART: f64 = 0.5;
-
 /// `nominal` with an effort that acts within a recorded row of its own, and the same with a first-order lag, where the effort is later
-/// than its clock alone makes it; `None` where it is not.
+/// than that; `None` where it is not.
 #[must_use]
 pub fn punctual_and_lagged(
     data: &Data<'_>,
@@ -137,7 +134,7 @@ pub fn punctual_and_lagged(
 ) -> Option<[Fit; 2]> {
     let recorded = data.trials[0].recorded_period_s;
     let delay = nominal.values[index::DELAY];
-    if delay <= CLOCKS_PART * recorded || nominal.model.has("effort_lag") {
+    if delay <= recorded || nominal.model.has("effort_lag") {
         return None;
     }
     let scales = Scales { latest_effort_s: recorded, ..nominal.model.scales };
