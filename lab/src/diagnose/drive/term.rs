@@ -197,14 +197,15 @@ impl Term {
     }
 
     /// Whether the 95 % interval of a value that makes it what it is, of those in `ends`, is all of the value's range: the recordings do not
-    /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923). Or reaches zero, where that is none (A. Wald,
-    /// *Trans. Am. Math. Soc.* 54, 1943).
+    /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923). Or that of a level or an excess of Stribeck friction
+    /// holds zero, where it is none (A. Wald, *Trans. Am. Math. Soc.* 54, 1943); parts of another friction stand for each other and are judged by
+    /// their likelihood alone.
     #[must_use]
     pub fn is_undetermined(&self, ends: &[[f64; 2]], scales: &Scales) -> bool {
         let ranges = self.ranges(scales);
         self.telling(scales).iter().any(|at| {
             let ([low, high], range) = (ends[*at], &ranges[*at]);
-            low <= range.low && (range.low == 0.0 || high >= range.high)
+            low <= range.low && (high >= range.high || range.low == 0.0 && *self == Self::Stribeck)
         })
     }
 
@@ -314,13 +315,12 @@ mod tests {
 
     /// An excess whose level where it moves may be none is an encoder that stands still.
     #[test]
-    fn a_friction_whose_interval_holds_zero_is_not_shown() {
+    fn a_stribeck_friction_whose_interval_holds_zero_is_not_shown() {
         let [level, excess, speed] = [[0.0, 0.3], [0.5, 0.6], [0.1 * SCALES.speed, 0.2 * SCALES.speed]];
         assert!(Term::Stribeck.is_undetermined(&[level, excess, speed], &SCALES));
         assert!(!Term::Stribeck.is_undetermined(&[[0.1, 0.3], excess, speed], &SCALES));
-        assert!(Term::Coulomb.is_undetermined(&[[0.0, 0.3]], &SCALES));
-        // A load has either sign.
-        assert!(!Term::ConstantLoad.is_undetermined(&[[0.0, 0.3]], &SCALES));
+        assert!(Term::Stribeck.is_undetermined(&[[0.1, 0.3], [0.0, 0.6], speed], &SCALES));
+        assert!(!Term::Coulomb.is_undetermined(&[[0.0, 0.3]], &SCALES));
     }
 
     /// Where the mass sits makes a link what it is; its damping and its friction do not.
