@@ -58,6 +58,18 @@ thresholds! { "drive";
     LEAST_HELD_OUT_SHARE = 0.12, "1", chosen;
     /// Times the sensors' own noise from which a missing force is one.
     OVER_NOISE = 1.5, "1", chosen;
+    /// Slowest tone, periods of the longest trial: what comes and goes less often is the course of a trial. Chosen.
+    FEWEST_PERIODS = 5.0, "periods", chosen;
+    /// Length of a window in which a drive stands still, in periods of the highest frequency at which a missing force is seen: its trend is taken
+    /// off, and with it what is slower than about a tenth of that frequency. Chosen.
+    STILL_PERIODS = 10.0, "periods", chosen;
+    /// How far a drive that stands still is seen to move, in steps of its encoder: a controller's answer to its rounding. Chosen.
+    STILL_STEPS = 4.0, "steps", chosen;
+    /// The same as a part of its travel.
+    STILL_PART = 1e-3, "1", chosen;
+    /// Fewest still windows from which their noise is known: a median of eight lies within an eighth of the deviation in two of three cases, as
+    /// each window holds some ten independent values. Chosen.
+    FEWEST_STILL_WINDOWS = 8.0, "count", chosen;
     /// Factor by which refitted values have to lessen what is missing before they are told as wrong.
     VALUES_MATTER = 1.15, "1", chosen;
     /// Factor between the rig file's inertia and one that is still believed to be this drive's. Chosen: without a bound a law that lacks

@@ -104,8 +104,8 @@ impl<'a> Integral<'a> {
         Self::new(time, values.collect(), true)
     }
 
-    /// Of a signal that is sampled, as a force: a parabola through the two rows about an interval and the one before, and one through those and the
-    /// one after, in the mean (the open rule of four ordinates, A. N. Krylov). Straight lines lose a fifteenth of what swings in seven rows.
+    /// Of a signal that is sampled, as a force: over an interval the mean of the parabola through its two rows and the one before and of that
+    /// through them and the one after. Straight lines lose a fifteenth of what swings in seven rows.
     fn sampled(time: &'a [f64], values: impl Iterator<Item = f64>) -> Self {
         Self::new(time, values.collect(), false)
     }
@@ -144,7 +144,7 @@ impl<'a> Integral<'a> {
         let interval = self.time[*row + 1] - self.time[*row];
         let slope = (next - level) / interval;
         let part = since / interval;
-        // Below the line by a parabola that is none at both ends.
+        // Below the line by all of the bend at the end, and as smoothly as from its start.
         let below = self.bend[*row + 1] * interval * part * part * (3.0 - 2.0 * part);
         self.total[*row] + since * (level + 0.5 * slope * since) - below
     }
@@ -184,8 +184,8 @@ impl<'a> Integral<'a> {
     }
 }
 
-/// How far the mean over the interval before `row` lies below that of its ends by the second difference about it: a twelfth of what a parabola through
-/// equal steps has. At an end, or beside a gap, none.
+/// How far the mean over the interval before `row` lies below that of its ends for a parabola of the curvature about it, that
+/// times the interval's square over twelve. At an end, or beside a gap, none.
 fn bend(time: &[f64], values: &[f64], row: usize) -> f64 {
     if row < 2 || row + 1 >= time.len() {
         return 0.0;

@@ -105,7 +105,35 @@ fn is_halved(left: f64, after: f64, noise: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::is_halved;
+    use super::super::criteria::UNKNOWN_PART_OF_EFFORT;
+    use super::super::identification::identify;
+    use super::super::nominal::NominalDrive;
+    use super::super::testing::TestDrive;
+    use super::{is_halved, rms};
+    use crate::diagnose::verdict::Verdict;
+
+    /// Less than the part of the effort from which a white force is unknown, and half of what is left: a force with a shape is there.
+    #[test]
+    fn a_friction_that_warms_up_and_a_tone_are_unknown_however_little_of_the_effort() {
+        let rig = NominalDrive {
+            inertia: 0.8,
+            viscous: 4.0,
+            is_rotary: false,
+            encoder: None,
+            resolution: 1e-5,
+            effects: Vec::new(),
+        };
+        for drive in [
+            TestDrive { cold: 0.06, encoder: 1e-6, ..TestDrive::PLAIN },
+            TestDrive { tone: 0.012, encoder: 1e-6, ..TestDrive::PLAIN },
+        ] {
+            let trials = vec![drive.trial(6.0, 57), drive.trial(6.0, 58)];
+            let outcome = identify(trials, &rig, 1, &|_| {}).expect("a drive that moves");
+            assert_eq!((outcome.verdict, outcome.named.len()), (Verdict::Unknown, 0), "{} {}", drive.cold, drive.tone);
+            let part = rms(&outcome.missing[1]) / outcome.chosen.model.scales.effort;
+            assert!(part < UNKNOWN_PART_OF_EFFORT.value(), "{part} {}", drive.cold);
+        }
+    }
 
     /// By hand: of 5 beside a noise of 3 there are 4, of which 2 are left where all is sqrt(13) = 3.606.
     #[test]

@@ -1,19 +1,9 @@
 //! What a drive shows as missing force while it stands still: noise of every colour that is recorded with effort and force, and no law of a motion.
 
+use super::criteria::{FEWEST_STILL_WINDOWS, STILL_PART, STILL_PERIODS, STILL_STEPS};
 use super::held_out::rms;
 use super::trial::DriveTrial;
 use crate::diagnose::median::median;
-
-/// Length of a still window, in periods of the highest frequency at which a missing force is seen: its trend is taken off, and with it what is
-/// slower than a tenth of that frequency.
-const WINDOW_PERIODS: f64 = 10.0;
-
-/// How far a drive that stands still is seen to move, in steps of its encoder or as a part of its travel.
-const STILL_STEPS: f64 = 4.0;
-const STILL_PART: f64 = 1e-3;
-
-/// Fewest windows from which a deviation is known: to an eighth.
-const FEWEST_WINDOWS: usize = 8;
 
 /// Root mean square of the force `missing`, a column a trial, about its trend in windows in which the drive stands still, N or N m: that of the median window, so
 /// that a push does not count. What holds a drive at rest is constant there, or goes with its trend. `None` where it hardly ever stands still.
@@ -28,7 +18,7 @@ pub fn noise_at_rest(
     let still = (STILL_STEPS * resolution).max(STILL_PART * travel);
     let mut powers = Vec::new();
     for (trial, force) in trials.iter().zip(missing) {
-        let rows = ((WINDOW_PERIODS / (band_hz * trial.period_s)).ceil() as usize).max(4);
+        let rows = ((STILL_PERIODS / (band_hz * trial.period_s)).ceil() as usize).max(4);
         for start in (0..trial.len().saturating_sub(rows)).step_by(rows) {
             let window = start..start + rows;
             let is_whole = !trial.restart[window.clone()].iter().skip(1).any(|restart| *restart);
@@ -37,7 +27,7 @@ pub fn noise_at_rest(
             }
         }
     }
-    (powers.len() >= FEWEST_WINDOWS).then(|| median(powers.into_iter())).flatten().map(f64::sqrt)
+    (powers.len() as f64 >= FEWEST_STILL_WINDOWS.value()).then(|| median(powers.into_iter())).flatten().map(f64::sqrt)
 }
 
 fn range(values: &[f64]) -> f64 {

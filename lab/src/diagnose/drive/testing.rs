@@ -57,12 +57,16 @@ pub struct TestDrive {
     pub encoder: f64,
     /// N, deviation of white noise that is recorded with the effort and does not drive.
     pub effort_noise: f64,
+    /// Share of that noise that is left in the next row.
+    pub effort_memory: f64,
     /// s, first-order lag of the effort behind what is recorded.
     pub effort_lag_s: f64,
     /// s, less than a row: by how much the effort acts later than it is recorded.
     pub effort_late_s: f64,
     /// Whether the mean of the effort before and after its row is recorded, and not what acts from there.
     pub is_averaged: bool,
+    /// Whether it stands still for the second half of a trial.
+    pub rests: bool,
     /// What gives between motor, where the encoder is, and load.
     pub link: Option<TestLink>,
 }
@@ -97,9 +101,11 @@ impl TestDrive {
         disturbance: 0.0,
         encoder: 5e-6,
         effort_noise: 0.0,
+        effort_memory: 0.0,
         effort_lag_s: 0.0,
         effort_late_s: 0.0,
         is_averaged: false,
+        rests: false,
         link: None,
     };
 
@@ -112,11 +118,13 @@ impl TestDrive {
         let step = period / STEPS as f64;
         let phases = [normal(), normal(), normal()];
         let reference = |t: f64| {
+            let t = if self.rests { t.min(0.5 * seconds) } else { t };
             let sine = |size: f64, hz: f64, phase: f64| size * (std::f64::consts::TAU * hz * t + phase).sin();
             sine(0.02, 0.6, phases[0]) + sine(0.005, 1.7, phases[1]) + sine(0.002, 5.1, phases[2])
         };
         let (mut x, mut v) = (reference(0.0), 0.0);
         let (mut load_x, mut load_v) = (x, v);
+        let mut heard = 0.0;
         let (mut command, mut drives, mut bristle) = (0.0, 0.0, 0.0);
         let (mut time, mut position, mut effort) = (Vec::new(), Vec::new(), Vec::new());
         for row in 0..rows {
@@ -128,7 +136,10 @@ impl TestDrive {
             let before = command;
             command = u;
             let shown = if self.is_averaged { 0.5 * (before + u) } else { u };
-            effort.push(if self.effort_noise > 0.0 { shown + self.effort_noise * normal() } else { shown });
+            if self.effort_noise > 0.0 {
+                heard = self.effort_memory * heard + (1.0 - self.effort_memory.powi(2)).sqrt() * normal();
+            }
+            effort.push(shown + self.effort_noise * heard);
             for part in 0..STEPS {
                 let acts = if (part as f64 + 0.5) * step < self.effort_late_s { before } else { command };
                 drives = if self.effort_lag_s > 0.0 {
