@@ -72,6 +72,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// Name, form and values of another effect that form `form` is where one of its `values` is zero; `None` where there is none.
+    fn special_case(&self, _form: usize, _values: &[f64]) -> Option<(&'static str, usize, Vec<f64>)> {
+        None
+    }
+
     /// The form that holds form `form` with `values` as a special case and one feature more, with values that its search starts from;
     /// `None` where there is none.
     fn refined(&self, _form: usize, _values: &[f64], _scene: &ExcitationStats) -> Option<(usize, Vec<Vec<f64>>)> {

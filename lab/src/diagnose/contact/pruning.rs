@@ -5,6 +5,7 @@ use super::model::{ContactModel, index};
 use super::own_values::{fewer_own_values, moved_values};
 use super::search::Search;
 use crate::diagnose::term::Term;
+use crate::effects::find;
 
 /// Part of the recordings' own stiffness that a memory starts beside at the least: beside no spring it would start as none.
 const LEAST_STIFFNESS: f64 = 0.1;
@@ -16,6 +17,14 @@ impl Search<'_> {
         'again: loop {
             for at in (self.nominal.model.terms.len()..best.model.terms.len()).rev() {
                 let less = self.without(&best, at);
+                if !self.is_worth(&best, &less) {
+                    best = less;
+                    continue 'again;
+                }
+            }
+            for at in self.nominal.model.terms.len()..best.model.terms.len() {
+                let Some((model, values)) = with_special_case(&best, at) else { continue };
+                let less = self.data.fit(&model, &values, Effort::FULL);
                 if !self.is_worth(&best, &less) {
                     best = less;
                     continue 'again;
@@ -44,6 +53,23 @@ impl Search<'_> {
     }
 }
 
+/// Model and values of `fit` with the effect in the place of term `at` that this is where one of its values is zero; `None` where there is none, or where the model has
+/// that effect already.
+fn with_special_case(fit: &Fit, at: usize) -> Option<(ContactModel, Vec<f64>)> {
+    let term = &fit.model.terms[at];
+    let start = fit.model.first_value_of(at);
+    let own = start..start + fit.model.count_of(term);
+    let (name, form, special) = term.effect.special_case(term.form, &fit.values[own.clone()])?;
+    if fit.model.times(name) > 0 {
+        return None;
+    }
+    let mut model = fit.model.clone();
+    model.terms[at] = Term { effect: find(name)?, form };
+    let mut values = fit.values.clone();
+    values.splice(own, special);
+    Some((model, values))
+}
+
 /// Model and values of `fit` without term `at`. What built on it alone becomes its simpler form.
 #[must_use]
 pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
@@ -67,4 +93,30 @@ pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
         }
     }
     (model, values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::circumstances::Circumstances;
+    use super::super::data::Data;
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::TestContact;
+    use super::*;
+
+    /// A drift whose rate is nothing stands only where the bias that it is was never tried.
+    #[test]
+    fn a_drift_that_does_not_move_is_a_bias() {
+        let trials = [TestContact { zero: 0.5, ..TestContact::PLAIN }.trial(1)];
+        let data = || Data::new(&trials);
+        let first = nominal_fit(&data(), &TestContact::nominal());
+        let nominal = data().again(&first);
+        let search = Search { nominal, data: data(), coarse: data(), circumstances: Circumstances::default() };
+        let drift = Term { effect: find("force_drift").unwrap(), form: 1 };
+        let values: Vec<f64> = search.nominal.values.iter().copied().chain([0.0, 0.5]).collect();
+        let fit = search.data.fit(&search.nominal.model.with(drift), &values, Effort::FULL);
+        let pruned = search.pruned(fit);
+        assert_eq!(pruned.model.names(0), ["force_bias"]);
+        // 3000 rows of 0.02 N tell a constant to far better than a hundredth of a newton.
+        assert!((pruned.values.last().unwrap() - 0.5).abs() < 0.01, "{:?}", pruned.values);
+    }
 }

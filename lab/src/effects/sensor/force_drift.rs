@@ -117,6 +117,11 @@ impl Effect for ForceDrift {
         }
     }
 
+    /// A zero that is off from the start and does not move is a bias.
+    fn special_case(&self, form: usize, values: &[f64]) -> Option<(&'static str, usize, Vec<f64>)> {
+        (form == 1).then(|| ("force_bias", 0, vec![values[1]]))
+    }
+
     fn act_on_reading(&self, form: usize, values: &[f64], reading: &mut Reading<'_>) {
         let zero = |time: f64| match form {
             0 => values[0] * time,
