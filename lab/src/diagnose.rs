@@ -22,6 +22,7 @@ pub mod model_comparison;
 pub mod phase;
 pub mod report;
 pub mod signals;
+pub mod so_far;
 pub mod term;
 pub mod threshold;
 pub mod thresholds;

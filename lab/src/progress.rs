@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::page::effect_name::effect_name;
+
 /// The steps of a command.
 pub struct Steps {
     bar: Option<ProgressBar>,
@@ -26,10 +28,11 @@ impl Steps {
         Self { bar, command }
     }
 
-    /// Says which step begins.
+    /// Says which step begins; keys of effects become words.
     pub fn say(&self, step: &str) {
+        let step = effect_name(step);
         match &self.bar {
-            Some(bar) => bar.set_message(step.to_owned()),
+            Some(bar) => bar.set_message(step),
             None => eprintln!("{}: {step}", self.command),
         }
     }

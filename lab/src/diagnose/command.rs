@@ -6,7 +6,6 @@ use std::time::SystemTime;
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use sha2::{Digest as _, Sha256};
 
 use super::{Found, diagnose, thresholds};
@@ -21,6 +20,7 @@ use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
 use crate::output_paths;
 use crate::page::{neighbour, quantity};
+use crate::progress::Steps;
 use crate::recording::Recording;
 use crate::replay::REPLAY_PAGE;
 use crate::rig::Rig;
@@ -82,8 +82,8 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     };
     let (json, page, model_place) = (open(&args.json)?, open(&args.report)?, open(&args.model)?);
     let experiment = open(&args.experiment)?;
-    let bar = progress();
-    let say = |step: &str| bar.set_message(step.to_owned());
+    let steps = Steps::new("diagnose");
+    let say = |step: &str| steps.say(step);
     let mut found = diagnose(&rig, &origin, &trials, &simulation, args.seed, &say)?;
     if (page.is_some() || experiment.is_some()) && !found.answer.alternatives.is_empty() {
         say("the trial that would decide");
@@ -92,7 +92,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         found.pictures.experiment = designed.or(found.pictures.experiment);
     }
     found.pictures.run = Some(run_record(args)?);
-    bar.finish_and_clear();
+    drop(steps);
     if let Some(file) = model_place {
         commit(file, model(args, &rig, &found, &trials)?.as_bytes())?;
     }
@@ -206,16 +206,6 @@ fn check_outputs(args: &DiagnoseArgs) -> Result<()> {
 fn commit(mut file: OutFile, bytes: &[u8]) -> Result<()> {
     file.write_all(bytes).map_err(|error| file.fault(&error))?;
     Ok(file.commit()?)
-}
-
-/// To standard error, and hidden where that is no terminal.
-fn progress() -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(std::time::Duration::from_millis(120));
-    bar
 }
 
 /// The answer to standard output, what else is to be known to standard error; where standard output is for the JSON `text`, all but that.

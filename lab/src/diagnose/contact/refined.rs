@@ -23,7 +23,7 @@ const POLISHED: usize = 3;
 impl Search<'_> {
     /// `fit`, where it has effects and stays far above the noise, by finer forms of them, and with what stands beside these alone.
     pub(super) fn refined(&mut self, mut fit: Fit, say: &dyn Fn(&str)) -> Fit {
-        say("the contact: finer forms of each law");
+        say(&format!("the contact: {}; finer forms of each law", self.so_far(&fit)));
         for _ in 0..MOST_REFINEMENTS {
             if !self.is_far(&fit) {
                 break;

@@ -7,6 +7,8 @@ use super::fit::Fit;
 use super::growth::distinct;
 use super::rest::Rest;
 use super::search::{MOST_TERMS, Search};
+use crate::diagnose::linalg::energy;
+use crate::diagnose::so_far::so_far;
 
 /// What was chosen, and the sets that it was chosen from.
 pub struct Chosen {
@@ -29,7 +31,7 @@ impl Search<'_> {
         let mut composed = Vec::new();
         let mut waiting = 0;
         for round in 0..MOST_TERMS + 1 {
-            say(&format!("the contact: {round} effects and one more"));
+            say(&format!("the contact: {}; one effect more", self.so_far(&best)));
             let mut grown = if round == 0 { self.seen_layers() } else { Vec::new() };
             for base in &beam {
                 let quick = self.grown(base);
@@ -67,7 +69,7 @@ impl Search<'_> {
                 beam.push(best.clone());
             }
         }
-        say("the contact: without each effect");
+        say(&format!("the contact: {}; without each effect", self.so_far(&best)));
         let fit = self.pruned(best);
         let fit = self.exchanged(fit, say);
         let fit = self.weigh_by(fit);
@@ -86,9 +88,16 @@ impl Search<'_> {
         Chosen { fit, sets }
     }
 
+    /// What `best` has beyond the nominal law, and what it leaves, both by the weights that count now.
+    pub(super) fn so_far(&self, best: &Fit) -> String {
+        let [best_left, all] =
+            [best, &self.nominal].map(|fit| energy(&self.data.weighted_residual(&fit.model, &fit.values)));
+        so_far(&best.model.names(self.nominal.model.terms.len()), (best_left / all).sqrt())
+    }
+
     /// `best` with each effect exchanged for another that does better in its place.
     fn exchanged(&self, mut best: Fit, say: &dyn Fn(&str)) -> Fit {
-        say("the contact: another effect in the place of each");
+        say(&format!("the contact: {}; another effect in the place of each", self.so_far(&best)));
         let first = self.nominal.model.terms.len();
         for _ in 0..2 {
             let rest = Rest::of(&self.data, &best);

@@ -10,6 +10,7 @@ use super::links;
 use super::model::{Model, index};
 use super::scales::Scales;
 use super::term::Term;
+use crate::diagnose::so_far::so_far;
 
 /// What a search works on.
 pub struct Search<'a> {
@@ -67,8 +68,8 @@ impl Search<'_> {
         let mut link_searches = 0;
         let mut is_waiting = false;
         let is_negligible = !self.is_asked && self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort;
-        for round in 0..if is_negligible { 0 } else { MOST_TERMS } {
-            say(&format!("the drive: {} terms and one more", round));
+        for _ in 0..if is_negligible { 0 } else { MOST_TERMS } {
+            say(&format!("the drive: {}; one term more", self.so_far(&best)));
             let mut grown: Vec<Fit> = Vec::new();
             for base in &beam {
                 let mut quick = self.quickly_grown(base);
@@ -81,7 +82,7 @@ impl Search<'_> {
                 && link_searches < LINK_SEARCHES
                 && self.leaves_much(&grown, &best)
             {
-                say("the drive: two bodies");
+                say(&format!("the drive: {}; two bodies", self.so_far(&best)));
                 link_searches += 1;
                 let found = links::found(&self.data, rigid, &self.disturbance(rigid), &self.sides);
                 let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
@@ -103,9 +104,17 @@ impl Search<'_> {
                 break;
             }
         }
-        say("the drive: without each term");
+        say(&format!("the drive: {}; without each term", self.so_far(&best)));
         let fit = self.believed(self.pruned(self.creeping(best, &mut sets)), &sets);
         Chosen { fit, sets: distinct(sets) }
+    }
+
+    /// What `best` has beyond the nominal law, and what it leaves.
+    fn so_far(&self, best: &Fit) -> String {
+        let own = self.nominal.model.terms.len();
+        let names: Vec<&str> =
+            best.model.terms.iter().skip(own).filter(|term| term.is_told()).map(Term::name).collect();
+        so_far(&names, self.unexplained(best) / self.unexplained(&self.nominal))
     }
 
     /// The terms of `law`, which was found on other trials, with the values that these teach.
