@@ -9,11 +9,12 @@
 //! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
 //! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
 //! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`], [`links`] and [`selection`] choose what stands beside it by
-//! its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`], [`noise_at_rest`] and [`alternatives`] are the evidence, of which
+//! its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`], [`noise_at_rest`], [`asymmetric_friction`] and [`alternatives`] are the evidence, of which
 //! [`judgement`] makes the [`outcome`]; [`outside_force`] finds stretches in which something else pushes, and [`identification`] is the
 //! way from trials to the answer.
 
 pub mod alternatives;
+pub mod asymmetric_friction;
 pub mod candidates;
 pub mod course;
 pub mod criteria;

@@ -17,8 +17,18 @@ pub struct Alternative {
     pub left: f64,
 }
 
+impl Alternative {
+    /// `fit`, which leaves `held_out` where the nominal law leaves `refitted`.
+    #[must_use]
+    pub fn of(fit: &Fit, held_out: &HeldOut, refitted: &HeldOut) -> Self {
+        let [left, before] = [held_out, refitted].map(|of| rms(&of.missing));
+        let share = 1.0 - (left / before.max(f64::MIN_POSITIVE)).powi(2);
+        Self { names: fit.model.names(), held_out_share: share.clamp(0.0, 1.0), left }
+    }
+}
+
 /// Alternatives that are told.
-const MOST_ALTERNATIVES: usize = 3;
+pub const MOST_ALTERNATIVES: usize = 3;
 
 /// Sets that were fitted in full and are neither refused by the likelihood nor told like the answer.
 #[must_use]
@@ -33,7 +43,6 @@ pub fn alternatives(
     if fit.model == search.nominal.model {
         return Vec::new();
     }
-    let before = rms(&refitted.missing);
     let is_open = |other: &&Fit| {
         other.model.names() != fit.model.names()
             && other.model.told_terms() <= fit.model.told_terms()
@@ -41,10 +50,5 @@ pub fn alternatives(
                 || search.worth(fit, other).throughout < LEAST_THROUGHOUT)
     };
     let open = chosen.sets.iter().filter(is_open).take(MOST_ALTERNATIVES);
-    open.map(|other| {
-        let left = rms(&folds.held_out(&search.data, other, common).missing);
-        let share = 1.0 - (left / before.max(f64::MIN_POSITIVE)).powi(2);
-        Alternative { names: other.model.names(), held_out_share: share.clamp(0.0, 1.0), left }
-    })
-    .collect()
+    open.map(|other| Alternative::of(other, &folds.held_out(&search.data, other, common), refitted)).collect()
 }

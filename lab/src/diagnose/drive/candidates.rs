@@ -51,7 +51,10 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
         }
     }
     if !has("gravity_load") {
-        offer(Term::ConstantLoad, vec![vec![0.0]]);
+        // Friction that differs by direction holds it.
+        if !base.model.terms.contains(&Term::AsymmetricCoulomb) {
+            offer(Term::ConstantLoad, vec![vec![0.0]]);
+        }
         let slow = [1.5, 4.0, 8.0].map(|turn| vec![0.0, 0.0, turn / scales.travel]).to_vec();
         offer(Term::AngleLoad, if scales.is_rotary { vec![vec![0.0; 3]] } else { slow });
     }
@@ -251,7 +254,7 @@ pub fn stribeck_for(fit: &Fit, at: usize) -> [(Model, Vec<f64>); STRIBECK_SPEEDS
 #[must_use]
 pub fn simpler(fit: &Fit, at: usize) -> Vec<(Model, Vec<f64>)> {
     let own = fit.model.values_of(at);
-    let other_rub = |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck);
+    let other_rub = |term: &Term| matches!(term, Term::Coulomb | Term::AsymmetricCoulomb | Term::Stribeck);
     let replaced = |term: Term, values: &[f64]| {
         let mut model = fit.model.clone();
         model.terms[at] = term;
@@ -261,6 +264,7 @@ pub fn simpler(fit: &Fit, at: usize) -> Vec<(Model, Vec<f64>)> {
     };
     let values = &fit.values[own.clone()];
     let mut all = match &fit.model.terms[at] {
+        Term::AsymmetricCoulomb => vec![replaced(Term::Coulomb, &[0.5 * (values[0] + values[1])])],
         Term::Stribeck => vec![replaced(Term::Coulomb, &[values[0] + 0.3 * values[1]])],
         Term::Sublinear if !fit.model.terms.iter().any(other_rub) => vec![replaced(Term::Coulomb, &[0.5 * values[0]])],
         Term::AngleLoad => vec![replaced(Term::ConstantLoad, &[0.0])],

@@ -1,6 +1,7 @@
 //! How what was chosen stands before unseen rows and the sensors' noise.
 
-use super::alternatives::alternatives;
+use super::alternatives::{Alternative, MOST_ALTERNATIVES, alternatives};
+use super::asymmetric_friction::as_asymmetric;
 use super::criteria::{LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE, UNKNOWN_PART_OF_EFFORT, VALUES_MATTER};
 use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::Fit;
@@ -10,6 +11,7 @@ use super::model::index;
 use super::noise_at_rest::noise_at_rest;
 use super::outcome::Outcome;
 use super::selection::{Chosen, Search};
+use super::term::Term;
 use super::validation::{Validated, validated};
 use crate::diagnose::verdict::Verdict;
 
@@ -25,14 +27,23 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     );
     let given = missing_forces(data, &as_given(search), &common);
     let refitted = folds.held_out(data, &search.nominal, &common);
-    let Validated { fit, held_out, named, uncertainty } = validated(search, &folds, &common, chosen.fit.clone());
+    let stands = validated(search, &folds, &common, chosen.fit.clone());
+    let mut alternatives = alternatives(search, &folds, &common, &stands.fit, &chosen, &refitted);
+    let one = as_asymmetric(&stands.fit, search.nominal.model.terms.len())
+        .map(|one| validated(search, &folds, &common, one))
+        .filter(|one| one.fit.model.terms.contains(&Term::AsymmetricCoulomb));
+    if let Some(one) = &one {
+        alternatives.retain(|other| other.names != one.fit.model.names());
+        alternatives.insert(0, Alternative::of(&stands.fit, &stands.held_out, &refitted));
+        alternatives.truncate(MOST_ALTERNATIVES);
+    }
+    let Validated { fit, held_out, named, uncertainty } = one.unwrap_or(stands);
     let expected_noise = expected_noise(data, &fit, &common, seed);
     let missing = [given, refitted.missing.clone(), held_out.missing];
     let at_rest =
         noise_at_rest(data.trials, &missing[2], search.band_hz, search.scales.resolution, search.scales.travel);
     let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed)).max(at_rest.unwrap_or(0.0));
     let verdict = verdict(search, &fit, &missing, recorded_noise);
-    let alternatives = alternatives(search, &folds, &common, &fit, &chosen, &refitted);
     Outcome {
         trials: Vec::new(),
         verdict,
@@ -80,4 +91,38 @@ fn verdict(search: &Search<'_>, fit: &Fit, missing: &[Vec<Vec<f64>>; 3], noise: 
     let is_left = is_notable && above(improved) > MOST_LEFT * above(refitted)
         || a_shape_does_better(search, fit, &missing[2], is_notable, noise);
     if is_left { Verdict::PartlyExplained } else { Verdict::Explained }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::identification::identify;
+    use super::super::nominal::NominalDrive;
+    use super::super::testing::TestDrive;
+    use super::*;
+    use crate::diagnose::drive::named::named;
+
+    /// Friction of 0.4 N beside a load of 0.15 N is one of 0.55 N forward and 0.25 N backward; two effects say no more.
+    #[test]
+    fn friction_beside_a_smaller_load_is_one_friction_of_two_levels_and_both_are_an_alternative() {
+        let rig = NominalDrive {
+            inertia: 0.75,
+            viscous: 5.0,
+            is_rotary: false,
+            encoder: None,
+            resolution: 1e-5,
+            effects: Vec::new(),
+        };
+        let drive = TestDrive { coulomb: 0.4, load: 0.15, ..TestDrive::PLAIN };
+        let outcome = identify(vec![drive.trial(6.0, 81), drive.trial(6.0, 82)], &rig, 1, &|_| {}).expect("it moves");
+        assert_eq!((outcome.verdict, outcome.chosen.model.names()), (Verdict::Explained, vec!["coulomb_friction"]));
+        let found = named(&outcome.chosen, &outcome.intervals, outcome.named[0].at).expect("an effect");
+        for ((value, ends), truth) in found.values.iter().zip(&found.intervals).zip([0.55, 0.25]) {
+            // As of a friction alone: to some hundredths of its level.
+            assert!(
+                (value - truth).abs() < 0.015 && ends[0] < truth + 0.006 && ends[1] > truth - 0.006,
+                "{value} {ends:?}"
+            );
+        }
+        assert_eq!(outcome.alternatives[0].names, ["coulomb_friction", "gravity_load"]);
+    }
 }

@@ -42,6 +42,7 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     let (form, all) = match term {
         Term::Coulomb | Term::ConstantLoad | Term::EffortLimit | Term::EffortLag => (0, same(&[0])),
         Term::LoadFriction | Term::ForceGain | Term::ForceDelay | Term::ToolInertia => (0, same(&[0])),
+        Term::AsymmetricCoulomb => (1, same(&[0, 1])),
         Term::Stribeck => (0, same(&[0, 1, 2])),
         Term::Sublinear => (0, [same(&[0, 1]), vec![fixed(fit.model.scales.speed)]].concat()),
         Term::AngleLoad if fit.model.scales.is_rotary => (1, same(&[0, 1, 2])),
@@ -71,7 +72,7 @@ pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Ter
     let friction_share = if resolved.form == 0 { 1.0 } else { 1.0 - v.last().copied().unwrap_or(0.0) };
     let found = match (resolved.effect.spec().name, resolved.form) {
         ("coulomb_friction", 0) => (Term::Coulomb, vec![v[0]]),
-        ("coulomb_friction", _) => (Term::Coulomb, vec![0.5 * (v[0] + v[1])]),
+        ("coulomb_friction", _) => (Term::AsymmetricCoulomb, v[..2].to_vec()),
         ("stribeck_friction", _) => (Term::Stribeck, v[..3].to_vec()),
         ("sublinear_friction", _) => (Term::Sublinear, vec![v[0] * (scales.speed / v[2]).powf(v[1]), v[1]]),
         ("load_dependent_friction", _) => (Term::LoadFriction, vec![v[0]]),

@@ -14,6 +14,8 @@ use super::scales::Scales;
 pub enum Term {
     /// Dry friction of one level.
     Coulomb,
+    /// The same of two levels, forward and backward.
+    AsymmetricCoulomb,
     /// Dry friction that is larger when creeping (Gaussian decay).
     Stribeck,
     /// Friction that grows with a power of the speed below one, beside dry friction.
@@ -85,7 +87,7 @@ impl Term {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Coulomb => "coulomb_friction",
+            Self::Coulomb | Self::AsymmetricCoulomb => "coulomb_friction",
             Self::Stribeck => "stribeck_friction",
             Self::Sublinear => "sublinear_friction",
             Self::Presliding => "presliding",
@@ -114,7 +116,7 @@ impl Term {
     /// Whether it is dry friction, which holds at rest.
     #[must_use]
     pub const fn is_friction(&self) -> bool {
-        matches!(self, Self::Coulomb | Self::Stribeck | Self::Sublinear | Self::LoadFriction)
+        matches!(self, Self::Coulomb | Self::AsymmetricCoulomb | Self::Stribeck | Self::Sublinear | Self::LoadFriction)
     }
 
     /// Whether it parts motor and load.
@@ -146,6 +148,7 @@ impl Term {
         let friction_share = Range::absolute(0.0, 1.0, 0.1);
         match self {
             Self::Coulomb => vec![positive],
+            Self::AsymmetricCoulomb => vec![positive, positive],
             Self::Stribeck => {
                 vec![positive, positive, Range::relative(1e-3 * scales.speed, 0.5 * scales.speed)]
             }
@@ -222,7 +225,7 @@ impl Term {
             Self::AngleLoad if !scales.is_rotary => &[2],
             // What is gone where it moves is no dry friction: a coarse encoder that stands still looks like it.
             Self::Stribeck => &[0, 1, 2],
-            Self::Sublinear => &[0, 1],
+            Self::AsymmetricCoulomb | Self::Sublinear => &[0, 1],
             Self::Cogging => &[2],
             Self::Compliance(_) => &[0, 2],
             Self::Play(_) => &[2, 3],
@@ -240,6 +243,10 @@ impl Term {
     pub fn apply(&self, values: &[f64], scales: &Scales, law: &mut DriveLaw) {
         match self {
             Self::Coulomb => law.friction.coulomb += values[0],
+            Self::AsymmetricCoulomb => {
+                law.friction.coulomb += 0.5 * (values[0] + values[1]);
+                law.offset += 0.5 * (values[0] - values[1]);
+            }
             Self::Stribeck => {
                 law.friction.coulomb += values[0];
                 law.friction.stribeck_excess = values[1];

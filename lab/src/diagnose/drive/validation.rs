@@ -41,8 +41,10 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
             .collect();
         let share = |left: &HeldOut| share_taken(left.density, held.density, search.effort_noise_density);
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
-        let carries =
-            |term: &Term| matches!(term, Term::Coulomb | Term::Stribeck) && fit.model.has("sublinear_friction");
+        let carries = |term: &Term| {
+            matches!(term, Term::Coulomb | Term::AsymmetricCoulomb | Term::Stribeck)
+                && fit.model.has("sublinear_friction")
+        };
         let needless = (0..without.len())
             .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[told[*nth]]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.density.total_cmp(&without[*b].1.density)) {
