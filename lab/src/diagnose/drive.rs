@@ -5,7 +5,7 @@
 //! Jorgensen, *Computers and Chemical Engineering* 28, 2004; Ljung, *System Identification*, 1999). Nothing is differentiated and no
 //! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
 //!
-//! [`trial`] and [`input`] are the data; [`law`], [`dry_friction`], [`course`], [`curve`], [`presliding`], [`two_mass_system`] and [`noise`] the equations.
+//! [`trial`] and [`input`] are the data, [`denoised`] by a [`wiener_filter`] where noise in them does not drive; [`law`], [`dry_friction`], [`course`], [`curve`], [`presliding`], [`two_mass_system`] and [`noise`] the equations.
 //! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
 //! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
 //! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`], [`links`] and [`selection`] choose what stands beside it by
@@ -19,6 +19,7 @@ pub mod candidates;
 pub mod course;
 pub mod criteria;
 pub mod curve;
+pub mod denoised;
 pub mod dry_friction;
 pub mod expected_noise;
 pub mod filter;
@@ -60,6 +61,7 @@ pub mod two_body_smoother;
 pub mod two_mass_motion;
 pub mod two_mass_system;
 pub mod validation;
+pub mod wiener_filter;
 pub mod worth;
 
 #[cfg(test)]

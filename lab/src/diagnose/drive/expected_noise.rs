@@ -22,9 +22,10 @@ pub fn expected_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> 
         let mut noise = trial.clone().without_effort();
         noise.position = draw.white(fit.noise.encoder(), trial.len());
         if let Some(force) = &mut noise.force {
-            *force = draw.white(white_variance(force), force.len());
+            let variance = trial.denoised.as_ref().map_or_else(|| white_variance(force), |filter| filter.noise[1]);
+            *force = draw.white(variance, force.len());
         }
-        noise
+        as_denoised(trial, noise)
     })
 }
 
@@ -36,10 +37,20 @@ pub fn effort_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> f6
     passed(data, fit, common, |trial| {
         let mut noise = trial.clone().without_effort();
         noise.position.fill(0.0);
-        noise.effort = draw.white(robust_white_variance(&trial.effort), trial.effort.len());
+        let variance =
+            trial.denoised.as_ref().map_or_else(|| robust_white_variance(&trial.effort), |filter| filter.noise[0]);
+        noise.effort = draw.white(variance, trial.effort.len());
         noise.force = None;
-        noise
+        as_denoised(trial, noise)
     })
+}
+
+/// What the filter of `trial` leaves of the `noise` that was drawn for effort and force.
+fn as_denoised(trial: &DriveTrial, noise: DriveTrial) -> DriveTrial {
+    let Some(filter) = &trial.denoised else { return noise };
+    let force = noise.force.clone().unwrap_or_else(|| vec![0.0; noise.effort.len()]);
+    let [effort, force] = filter.passed(&[noise.effort.clone(), force]);
+    DriveTrial { effort, force: noise.force.is_some().then_some(force), ..noise }
 }
 
 /// Missing force of what `noise` makes of each trial under the rigid law of `fit`, N or N m in root mean square.

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::criteria::{COARSER, LOWEST_BAND_HZ, MOST_COARSE};
+use super::denoised::denoised;
 use super::fit::Fit;
 use super::held_out::rms;
 use super::judgement::judged;
@@ -122,9 +123,12 @@ fn identify_by(
 ) -> Option<Outcome> {
     let scales = scales(&trials, rig)?;
     let encoder_variance = encoder_variance(&trials, &scales);
-    let data = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
     say("the drive: nominal values");
-    let nominal = nominal_fit(&data, rig, scales, encoder_variance)?;
+    let as_recorded = Data { trials: &trials, least_encoder_variance: 0.3 * encoder_variance };
+    let nominal = nominal_fit(&as_recorded, rig, scales, encoder_variance)?;
+    let denoised = denoised(&as_recorded, &nominal);
+    let data = denoised.as_ref().map_or(as_recorded, |trials| Data { trials, ..as_recorded });
+    let nominal = if denoised.is_some() { nominal_fit(&data, rig, scales, encoder_variance)? } else { nominal };
     // A recording may be late by some rows. Where a lag of the drive is worth its value beside a punctual recording, it is the lag.
     let lag = punctual_and_lagged(&data, rig, &nominal, encoder_variance).and_then(|[punctual, lagged]| {
         // It was found already: however little of the effort it is, it is looked for.
@@ -135,7 +139,7 @@ fn identify_by(
     let chosen = chosen(&search);
     say("the drive: what is left");
     let mut outcome = judged(&search, chosen, seed);
-    outcome.trials.clone_from(&trials);
+    outcome.trials = denoised.unwrap_or(trials);
     Some(outcome)
 }
 

@@ -7,7 +7,7 @@ use super::innovations::Innovations;
 use super::input::Inputs;
 use super::law::DriveLaw;
 use super::model::Model;
-use super::noise::{Noise, robust_white_variance};
+use super::noise::Noise;
 use super::trial::DriveTrial;
 
 /// The trials that a model is fitted to.
@@ -35,7 +35,7 @@ impl Data<'_> {
     /// for a row of dt has s^2 dt.
     #[must_use]
     pub fn effort_noise_density(&self) -> f64 {
-        let of = |trial: &DriveTrial| robust_white_variance(&trial.effort) * trial.recorded_period_s;
+        let of = |trial: &DriveTrial| trial.effort_variance() * trial.recorded_period_s;
         let rows: f64 = self.trials.iter().map(|trial| trial.len() as f64).sum();
         self.trials.iter().map(|trial| of(trial) * trial.len() as f64).sum::<f64>() / rows.max(1.0)
     }

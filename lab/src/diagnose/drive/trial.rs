@@ -1,6 +1,9 @@
 //! A recording as the drive's model sees it: encoder rows, and the signals that act between them.
 
-use super::noise::white_variance;
+use std::sync::Arc;
+
+use super::noise::{robust_white_variance, white_variance};
+use super::wiener_filter::WienerFilter;
 use crate::diagnose::median::median;
 
 /// One trial. Encoder rows may be fewer than the recorded ones; effort and force keep every recorded row.
@@ -28,6 +31,8 @@ pub struct DriveTrial {
     pub force: Option<Vec<f64>>,
     /// Two-sided density of the force sensor's noise, which the model feels as a force on the load, N^2 s or (N m)^2 s.
     pub force_density: f64,
+    /// What took the sensors' noise out of effort and force; `None` where they are as recorded.
+    pub denoised: Option<Arc<WienerFilter>>,
 }
 
 /// Periods after which a pause is a gap: what the drive did meanwhile is unknown, and the filter starts anew.
@@ -63,6 +68,7 @@ impl DriveTrial {
             load: None,
             force,
             force_density: 0.0,
+            denoised: None,
         }
     }
 
@@ -71,6 +77,23 @@ impl DriveTrial {
     pub fn net_effort(&self) -> Vec<f64> {
         let Some(load) = &self.load else { return self.effort.clone() };
         self.effort.iter().zip(load).map(|(effort, load)| effort - load).collect()
+    }
+
+    /// The same with effort and force as they most probably were, where they were recorded with noise of `levels` times what
+    /// changes from row to row.
+    #[must_use]
+    pub fn denoised(&self, levels: [f64; 2]) -> Self {
+        let force = self.force.clone().unwrap_or_else(|| vec![0.0; self.effort.len()]);
+        let recorded = [self.effort.clone(), force];
+        let Some(filter) = WienerFilter::of(&recorded, levels) else { return self.clone() };
+        let [effort, force] = filter.passed(&recorded);
+        Self { effort, force: self.force.is_some().then_some(force), denoised: Some(Arc::new(filter)), ..self.clone() }
+    }
+
+    /// Variance of the white noise in the effort, N^2 or (N m)^2.
+    #[must_use]
+    pub fn effort_variance(&self) -> f64 {
+        self.denoised.as_ref().map_or_else(|| robust_white_variance(&self.effort), |filter| filter.effort_noise_left())
     }
 
     /// The same without what acts on it.
@@ -117,6 +140,7 @@ impl DriveTrial {
             load: self.load.clone(),
             force: self.force.clone(),
             force_density: self.force_density,
+            denoised: self.denoised.clone(),
         }
     }
 

@@ -89,6 +89,7 @@ pub fn drive_report(outcome: &Outcome, rig: &Rig, touched: Option<&Touched>) -> 
             .into_iter()
             .chain(load_at_its_end(outcome))
             .chain(slower_motion(outcome, coordinate))
+            .chain(noise_taken_out(outcome, coordinate))
             .collect(),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
@@ -153,6 +154,29 @@ fn slower_motion(outcome: &Outcome, coordinate: Coordinate) -> Option<Finding> {
             "From row to row the position moves faster than any force on the inertia could move it, as where a gear rattles or an arm \
              bends between the motor and the load. The law is that of the slower motion, seen as by an encoder with steps of {step}; what \
              happens faster is unknown."
+        ),
+    })
+}
+
+/// That noise was taken out of effort or force.
+fn noise_taken_out(outcome: &Outcome, coordinate: Coordinate) -> Option<Finding> {
+    let largest = |of: usize| {
+        let filters = outcome.trials.iter().filter_map(|trial| trial.denoised.as_ref());
+        filters.map(|filter| filter.noise[of].sqrt()).fold(0.0, f64::max)
+    };
+    let told = |name: &str, deviation: f64| {
+        let size = quantity::rounded(deviation, coordinate.force_unit(), 2);
+        (deviation > 0.0).then(|| format!("of the recorded {name} as much as white noise of {size}"))
+    };
+    let all: Vec<String> = [told("effort", largest(0)), told("force", largest(1))].into_iter().flatten().collect();
+    (!all.is_empty()).then(|| Finding {
+        code: "noise_taken_out",
+        grave: false,
+        place: "drive".to_owned(),
+        text: format!(
+            "Noise that does not move the drive was taken out before a law was fitted, where it drowns the signal: {}. A law that is driven by it finds \
+             an inertia that is too large.",
+            all.join(", ")
         ),
     })
 }
