@@ -5,7 +5,7 @@ mod separating_experiment;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use separating_experiment::separated_by;
+pub use separating_experiment::{separated_by, shown_beside};
 
 /// A trajectory to run.
 #[derive(Debug, Clone, Serialize, JsonSchema)]

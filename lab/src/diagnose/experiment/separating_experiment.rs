@@ -14,7 +14,7 @@ const fn pair(one: &'static str, other: &'static str, by: &'static str) -> Separ
     SeparatingExperiment { names: [one, other], by }
 }
 
-static SEPARATING_EXPERIMENTS: [SeparatingExperiment; 28] = [
+static SEPARATING_EXPERIMENTS: [SeparatingExperiment; 29] = [
     pair(
         "transmission_compliance",
         "stress_relaxation",
@@ -145,6 +145,12 @@ static SEPARATING_EXPERIMENTS: [SeparatingExperiment; 28] = [
     ),
     pair(
         "coulomb_friction",
+        "gravity_load",
+        "Record again with the machine turned over: a weight changes its sign with it, friction, as large both ways or not, does not. No motion of the machine as it \
+         stands tells friction that differs by direction from friction beside a weight.",
+    ),
+    pair(
+        "coulomb_friction",
         "backlash",
         "Reverse the effort in free space without haste: friction is there all the way, play only at the turn.",
     ),
@@ -160,6 +166,12 @@ fn known(answer: &Term, rival: &Term) -> Option<&'static SeparatingExperiment> {
     SEPARATING_EXPERIMENTS
         .iter()
         .find(|pair| pair.names.iter().all(|name| names.contains(name)) && names[0] != names[1])
+}
+
+/// What would show `new` beside `answer`, which stays; `None` where the list knows no such pair.
+#[must_use]
+pub fn shown_beside(answer: &Term, new: &Term) -> Option<&'static str> {
+    known(answer, new).map(|pair| pair.by)
 }
 
 /// One plain sentence: the motion that would separate `answer` from `rival`; where none does from force and position

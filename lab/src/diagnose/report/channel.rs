@@ -108,6 +108,10 @@ pub(super) fn alternative(
     let law = |name: &&str| Some(Term { effect: effects::find(name)?, form: 0 });
     let separated_by = match (gone.and_then(law), new.first().and_then(law)) {
         (Some(gone), Some(new)) => experiment::separated_by(&gone, &new),
+        (None, Some(new)) => {
+            let beside = shared.iter().filter_map(law).find_map(|stays| experiment::shown_beside(&stays, &new));
+            beside.unwrap_or(otherwise).to_owned()
+        }
         _ => otherwise.to_owned(),
     };
     let physics = new.into_iter().chain(shared).map(str::to_owned).collect();
@@ -123,6 +127,16 @@ mod tests {
         assert_eq!(told(9.4e-9, [0.0, 4.9e13]), [f64::NEG_INFINITY, f64::INFINITY]);
         assert_eq!(told(-0.02, [-0.2, 0.16]), [-0.2, 0.16]);
         assert_eq!(told(0.0, [-1.0, 1.0]), [-1.0, 1.0]);
+    }
+
+    /// Friction of two levels, and friction beside a weight, are one force in any motion.
+    #[test]
+    fn friction_beside_a_weight_is_told_by_turning_the_machine_over() {
+        let advice =
+            |answer: &[&str], names: &[&str]| alternative("effort", answer, names, 0.9, "more rows").separated_by;
+        let both = advice(&["coulomb_friction"], &["coulomb_friction", "gravity_load"]);
+        assert!(both.contains("turned over"), "{both}");
+        assert_eq!(advice(&["coulomb_friction"], &["coulomb_friction", "cogging"]), "more rows");
     }
 
     #[test]
