@@ -22,7 +22,7 @@ pub fn expected_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> 
         let mut noise = trial.clone().without_effort();
         noise.position = draw.white(fit.noise.encoder(), trial.len());
         if let Some(force) = &mut noise.force {
-            let variance = trial.denoised.as_ref().map_or_else(|| white_variance(force), |filter| filter.noise[1]);
+            let variance = taken_out(trial, 1).max(white_variance(force));
             *force = draw.white(variance, force.len());
         }
         as_denoised(trial, noise)
@@ -37,12 +37,16 @@ pub fn effort_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> f6
     passed(data, fit, common, |trial| {
         let mut noise = trial.clone().without_effort();
         noise.position.fill(0.0);
-        let variance =
-            trial.denoised.as_ref().map_or_else(|| robust_white_variance(&trial.effort), |filter| filter.noise[0]);
+        let variance = taken_out(trial, 0).max(robust_white_variance(&trial.effort));
         noise.effort = draw.white(variance, trial.effort.len());
         noise.force = None;
         as_denoised(trial, noise)
     })
+}
+
+/// Variance of the noise that was taken out of effort (0) or force (1); zero where none was: then what is recorded has all of it.
+fn taken_out(trial: &DriveTrial, of: usize) -> f64 {
+    trial.denoised.as_ref().map_or(0.0, |filter| filter.noise[of])
 }
 
 /// What the filter of `trial` leaves of the `noise` that was drawn for effort and force.
@@ -71,5 +75,48 @@ impl Draw {
     fn white(&mut self, variance: f64, count: usize) -> Vec<f64> {
         let deviation = variance.sqrt();
         (0..count).map(|_| deviation * Distribution::<f64>::sample(&StandardNormal, &mut self.0)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::levenberg_marquardt::Ended;
+    use super::super::model::Model;
+    use super::super::testing::{SCALES, TestDrive};
+    use super::*;
+
+    /// What was taken out is gone, and what was not is still there: a force of 0.5 N of noise beside an effort of 1 N of noise.
+    #[test]
+    fn noise_that_was_left_in_is_expected_and_noise_that_was_taken_out_is_not() {
+        let recorded = TestDrive { effort_noise: 1.0, ..TestDrive::PLAIN }.trial(6.0, 21);
+        let force = Draw::new(3).white(0.25, recorded.effort.len());
+        let recorded = DriveTrial { force: Some(force), ..recorded };
+        let noise = Noise { ln_disturbance: -8.0, ln_encoder: (25e-12f64).ln() };
+        let fit = Fit {
+            model: Model { terms: Vec::new(), scales: SCALES },
+            values: vec![0.8, 4.0, 0.0, 0.0],
+            noise,
+            log_likelihood: 0.0,
+            ended: Ended::Converged,
+        };
+        let common = noise.with_crossing(60.0, 1e-3, 0.8);
+        let of = |levels: Option<[f64; 2]>| {
+            let trials = [levels.map_or_else(|| recorded.clone(), |levels| recorded.denoised(levels))];
+            let data = Data { trials: &trials, least_encoder_variance: 0.0 };
+            (
+                expected_noise(&data, &fit, &common, 1),
+                effort_noise(&data, &fit, &common, 1),
+                data.effort_noise_density(),
+            )
+        };
+        let (force, effort, density) = of(None);
+        let (same_force, less_effort, less_density) = of(Some([1.0, 0.0]));
+        // It passes whole, and a sixth of it more as effort: by 33 frequencies, of which one in two is free, the coherence of two noises that have nothing in
+        // common is a quarter at most.
+        assert!((same_force / force - 1.0).abs() < 0.2, "{same_force} {force}");
+        assert!(less_effort < 0.7 * effort && less_density < 0.2 * density, "{less_effort} {effort} {less_density}");
+        let (less_force, same_effort, same_density) = of(Some([0.0, 1.0]));
+        assert!(less_force < 0.7 * force, "{less_force} {force}");
+        assert!((same_effort / effort - 1.0).abs() < 0.2 && (same_density / density - 1.0).abs() < 0.02);
     }
 }

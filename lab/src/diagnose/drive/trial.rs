@@ -93,7 +93,8 @@ impl DriveTrial {
     /// Variance of the white noise in the effort, N^2 or (N m)^2.
     #[must_use]
     pub fn effort_variance(&self) -> f64 {
-        self.denoised.as_ref().map_or_else(|| robust_white_variance(&self.effort), |filter| filter.effort_noise_left())
+        let left = self.denoised.as_ref().map_or(0.0, |filter| filter.effort_noise_left());
+        left.max(robust_white_variance(&self.effort))
     }
 
     /// The same without what acts on it.
