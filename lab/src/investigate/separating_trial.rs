@@ -2,7 +2,7 @@
 
 use super::questions::questions;
 use crate::diagnose::Found;
-use crate::diagnose::report::diagnosis::Experiment;
+use crate::diagnose::report::diagnosis::{Experiment, Physics};
 use crate::experiment_design::discrimination::Noise;
 use crate::experiment_design::explanation::{UNKNOWN, explanations};
 use crate::experiment_design::loop_model::LoopModel;
@@ -25,7 +25,9 @@ pub fn explanations_of(
     let known = |rig: &Rig| names(&rig.effects.iter().map(|table| table.name.clone()).collect::<Vec<_>>());
     // The contact's alternatives come with fitted rigs of their own.
     let (mut fitted, mut open) = (Vec::new(), Vec::new());
-    for alternative in &found.answer.alternatives {
+    for alternative in
+        found.answer.alternatives.iter().filter(|other| !is_the_same_law(&found.answer.physics, &other.physics))
+    {
         let wanted = names(&alternative.physics);
         let own = found.alternatives.iter().find(|rig| wanted.is_subset(&known(rig)));
         match own {
@@ -36,6 +38,16 @@ pub fn explanations_of(
     let mut all = explanations(answer, &open, trials, closed_loop, noise);
     all.extend(fitted);
     all
+}
+
+/// Whether `alternative` is dry friction of one level beside a constant load where the `answer` is friction of two levels: the same force in every motion.
+fn is_the_same_law(answer: &[Physics], alternative: &[String]) -> bool {
+    let has_two_levels = |physics: &Physics| physics.parameters.iter().any(|value| value.name == "forward_level");
+    let has = |name: &str| alternative.iter().any(|other| other == name);
+    answer.iter().any(|physics| physics.name == "coulomb_friction" && has_two_levels(physics))
+        && answer.iter().all(|physics| physics.name != "gravity_load")
+        && has("coulomb_friction")
+        && has("gravity_load")
 }
 
 /// Expected noise of each channel, no less than what `found` leaves in it.
@@ -84,4 +96,38 @@ pub fn separating_trial(rig: &Rig, found: &Found, trials: &[Recording]) -> Optio
 pub fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::report::diagnosis::{Evidence, Value};
+
+    fn physics(name: &str, parameters: &[&str]) -> Physics {
+        let value =
+            |name: &&str| Value { name: (*name).to_owned(), value: 1.0, unit: "N".to_owned(), ci95: [0.9, 1.1] };
+        Physics {
+            name: name.to_owned(),
+            acts_in: "drive",
+            channel: "effort",
+            statement: String::new(),
+            equation: String::new(),
+            evidence: Evidence { held_out_gain: 0.9, p_value: 1e-9 },
+            parameters: parameters.iter().map(value).collect(),
+            on_drive: None,
+        }
+    }
+
+    /// No trial is designed to tell apart what responds alike under every motion.
+    #[test]
+    fn friction_of_two_levels_is_friction_beside_a_load_and_no_other_alternative_is() {
+        let two = [physics("coulomb_friction", &["forward_level", "backward_level"])];
+        let one = [physics("coulomb_friction", &["level"])];
+        let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        let both = names(&["gravity_load", "coulomb_friction"]);
+        assert!(is_the_same_law(&two, &both));
+        assert!(!is_the_same_law(&one, &both));
+        assert!(!is_the_same_law(&two, &names(&["stribeck_friction"])));
+        assert!(!is_the_same_law(&two, &names(&["gravity_load", "stribeck_friction"])));
+    }
 }

@@ -227,7 +227,7 @@ fn coulomb() -> Physics {
         acts_in: "drive",
         channel: "effort",
         statement: "The drive drags with the same force at every speed".into(),
-        equation: "as symmetric, with forward_level for v > 0 and backward_level for v < 0".into(),
+        equation: "m a + b v + forward_level where v > 0, - backward_level where v < 0, = effort - F; at rest it holds up to either".into(),
         evidence: Evidence { held_out_gain: 0.995, p_value: 0.004 },
         parameters: vec![value("forward_level", 1.43, "N", 0.05), lopsided],
         on_drive: None,

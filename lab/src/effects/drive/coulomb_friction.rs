@@ -24,7 +24,7 @@ static SPEC: EffectSpec = EffectSpec {
         },
         Form {
             name: "asymmetric",
-            equation: "as symmetric, with forward_level for v > 0 and backward_level for v < 0",
+            equation: "m a + b v + forward_level where v > 0, - backward_level where v < 0, = effort - F; at rest it holds up to either",
             parameters: &[
                 Parameter::new("forward_level", NEWTON, "dry friction going in", 0.0, f64::INFINITY),
                 Parameter::new("backward_level", NEWTON, "dry friction coming out", 0.0, f64::INFINITY),
