@@ -1,6 +1,6 @@
 //! Recordings without the noise of their effort and force, where that does not drive.
 
-use super::candidates::is_likelier;
+use super::candidates::belongs;
 use super::fit::{Effort, Fit, fit};
 use super::likelihood::Data;
 use super::trial::DriveTrial;
@@ -10,8 +10,9 @@ use super::trial::DriveTrial;
 const LEVELS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 /// The trials of `data` with as much noise taken out of effort and force as makes the encoder's rows likeliest under the law of `nominal`. `None` where nothing does
-/// so by as much as a value of a law has to: what looks like noise drives, too, as where a controller commands it, or there is none. Both are
-/// densities of the same rows.
+/// so by as much as a value of a law has to, or takes too small a share of the force that is not explained: what looks like noise drives, too, as where a
+/// controller commands it, or it hardly matters, and a law that lacks physics may be likelier by chance behind a smoother input. Both are densities
+/// of the same rows.
 #[must_use]
 pub fn denoised(data: &Data<'_>, nominal: &Fit) -> Option<Vec<DriveTrial>> {
     if data.trials.iter().any(|trial| trial.denoised.is_some()) {
@@ -38,7 +39,7 @@ fn better(data: &Data<'_>, nominal: &Fit, best: Option<Denoised>, levels: [f64; 
     let fit = fit(&Data { trials: &trials, ..*data }, &nominal.model, &nominal.values, nominal.noise, Effort::FULL);
     let is_better = match &best {
         Some(best) => fit.log_likelihood > best.fit.log_likelihood,
-        None => is_likelier(&fit, nominal),
+        None => belongs(data, &fit, nominal),
     };
     if is_better { Some(Denoised { levels, trials, fit }) } else { best }
 }
