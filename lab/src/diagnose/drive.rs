@@ -5,11 +5,13 @@
 //! Jorgensen, *Computers and Chemical Engineering* 28, 2004; Ljung, *System Identification*, 1999). Nothing is differentiated and no
 //! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
 //!
-//! [`trial`] and [`input`] are the data, [`denoised`] by a [`wiener_filter`] where noise in them does not drive; [`law`], [`dry_friction`], [`course`], [`curve`], [`presliding`], [`two_mass_system`] and [`noise`] the equations.
+//! [`trial`] and [`input`] are the data, [`denoised`] by a [`wiener_filter`] where noise in them does not drive; [`law`], [`dry_friction`],
+//! [`course`], [`curve`], [`presliding`], [`two_mass_system`] and [`noise`] the equations.
 //! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
 //! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
 //! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`], [`links`] and [`selection`] choose what stands beside it by
-//! its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`], [`noise_at_rest`], [`asymmetric_friction`] and [`alternatives`] are the evidence, of which
+//! its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`],
+//! [`noise_at_rest`], [`asymmetric_friction`] and [`alternatives`] are the evidence, of which
 //! [`judgement`] makes the [`outcome`]; [`outside_force`] finds stretches in which something else pushes, and [`identification`] is the
 //! way from trials to the answer.
 

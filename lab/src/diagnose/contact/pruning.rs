@@ -53,8 +53,8 @@ impl Search<'_> {
     }
 }
 
-/// Model and values of `fit` with the effect in the place of term `at` that this is where one of its values is zero; `None` where there is none, or where the model has
-/// that effect already.
+/// Model and values of `fit` with the effect in the place of term `at` that this is where one of its values is zero; `None` where there is none,
+/// or where the model has that effect already.
 fn with_special_case(fit: &Fit, at: usize) -> Option<(ContactModel, Vec<f64>)> {
     let term = &fit.model.terms[at];
     let start = fit.model.first_value_of(at);

@@ -58,6 +58,11 @@ thresholds! { "drive";
     LEAST_HELD_OUT_SHARE = 0.12, "1", chosen;
     /// Times the sensors' own noise from which a missing force is one.
     OVER_NOISE = 1.5, "1", chosen;
+    /// Half of the width over which a spectrum of effort and force is averaged, over its frequency: it is smooth on a logarithmic axis. Chosen.
+    SPECTRUM_WIDTH = 0.05, "1", chosen;
+    /// Fewest frequencies to each side over which it is averaged (P. J. Daniell, *J. R. Stat. Soc. Suppl.* 8, 1946, 88): 33, half a period in the recording
+    /// apart, of which one in two is free, tell a density to a quarter. Chosen.
+    LEAST_SPECTRUM_WIDTH = 16.0, "count", chosen;
     /// Slowest tone, periods of the longest trial: what comes and goes less often is the course of a trial. Chosen.
     FEWEST_PERIODS = 5.0, "periods", chosen;
     /// Length of a window in which a drive stands still, in periods of the highest frequency at which a missing force is seen: its trend is taken

@@ -9,13 +9,13 @@ use super::trial::DriveTrial;
 /// row has nine times as much at low frequencies as at the highest.
 const LEVELS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// The trials of `data` with as much noise taken out of effort and force as makes the encoder's rows likeliest under the law of `nominal`. `None` where nothing does
-/// so by as much as a value of a law has to, or takes too small a share of the force that is not explained: what looks like noise drives, too, as where a
-/// controller commands it, or it hardly matters, and a law that lacks physics may be likelier by chance behind a smoother input. Both are densities
-/// of the same rows.
+/// The trials of `data` with as much noise taken out of effort and force as makes the encoder's rows likeliest under the law of `nominal`. `None`
+/// where nothing does so by as much as a value of a law has to, or takes too small a share of the force that is not explained: what looks like
+/// noise drives, too, as where a controller commands it, or it hardly matters, and a law that lacks physics may be likelier by chance behind a
+/// smoother input. Both are densities of the same rows.
 #[must_use]
 pub fn denoised(data: &Data<'_>, nominal: &Fit) -> Option<Vec<DriveTrial>> {
-    if data.trials.iter().any(|trial| trial.denoised.is_some()) {
+    if data.trials.iter().any(|trial| trial.noise_filter.is_some()) {
         return None;
     }
     let of_effort = LEVELS.iter().fold(None, |best, level| better(data, nominal, best, [*level, 0.0]));

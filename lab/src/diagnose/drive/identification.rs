@@ -157,11 +157,7 @@ mod tests {
     use rand_chacha::ChaCha12Rng;
 
     use super::*;
-    use crate::diagnose::drive::testing::{TestDrive, TestLink};
-
-    fn nominal(inertia: f64, viscous: f64) -> NominalDrive {
-        NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() }
-    }
+    use crate::diagnose::drive::testing::{TestDrive, TestLink, nominal};
 
     fn identified(drive: &TestDrive, inertia: f64, viscous: f64, seed: u64) -> Outcome {
         let trials = vec![drive.trial(6.0, seed), drive.trial(6.0, seed + 1)];

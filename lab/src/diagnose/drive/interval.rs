@@ -85,8 +85,7 @@ pub fn widen(outcome: &mut Outcome, changes: &[Vec<Vec<f64>>]) {
 #[cfg(test)]
 mod tests {
     use super::super::identification::identify;
-    use super::super::nominal::NominalDrive;
-    use super::super::testing::TestDrive;
+    use super::super::testing::{TestDrive, nominal};
     use super::*;
 
     /// A drive under a constant load of 1 N that is given a force whose zero is known to 0.1 N: so is the load then, and nothing else is known
@@ -95,14 +94,7 @@ mod tests {
     fn what_is_not_known_of_the_force_is_not_known_of_what_it_stands_for() {
         let drive = TestDrive { load: 1.0, ..TestDrive::PLAIN };
         let trials = vec![drive.trial(6.0, 131), drive.trial(6.0, 132)];
-        let rig = NominalDrive {
-            inertia: 0.8,
-            viscous: 4.0,
-            is_rotary: false,
-            encoder: None,
-            resolution: 1e-5,
-            effects: Vec::new(),
-        };
+        let rig = nominal(0.8, 4.0);
         let mut outcome = identify(trials, &rig, 1, &|_| {}).expect("a drive that moves");
         assert_eq!(outcome.chosen.model.names(), ["gravity_load"]);
         let load = outcome.chosen.model.values_of(0).start;

@@ -96,22 +96,14 @@ fn verdict(search: &Search<'_>, fit: &Fit, missing: &[Vec<Vec<f64>>; 3], noise: 
 #[cfg(test)]
 mod tests {
     use super::super::identification::identify;
-    use super::super::nominal::NominalDrive;
-    use super::super::testing::TestDrive;
+    use super::super::testing::{TestDrive, nominal};
     use super::*;
     use crate::diagnose::drive::named::named;
 
     /// Friction of 0.4 N beside a load of 0.15 N is one of 0.55 N forward and 0.25 N backward; two effects say no more.
     #[test]
     fn friction_beside_a_smaller_load_is_one_friction_of_two_levels_and_both_are_an_alternative() {
-        let rig = NominalDrive {
-            inertia: 0.75,
-            viscous: 5.0,
-            is_rotary: false,
-            encoder: None,
-            resolution: 1e-5,
-            effects: Vec::new(),
-        };
+        let rig = nominal(0.75, 5.0);
         let drive = TestDrive { coulomb: 0.4, load: 0.15, ..TestDrive::PLAIN };
         let outcome = identify(vec![drive.trial(6.0, 81), drive.trial(6.0, 82)], &rig, 1, &|_| {}).expect("it moves");
         assert_eq!((outcome.verdict, outcome.chosen.model.names()), (Verdict::Explained, vec!["coulomb_friction"]));

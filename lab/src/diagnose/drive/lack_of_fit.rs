@@ -107,22 +107,14 @@ fn is_halved(left: f64, after: f64, noise: f64) -> bool {
 mod tests {
     use super::super::criteria::UNKNOWN_PART_OF_EFFORT;
     use super::super::identification::identify;
-    use super::super::nominal::NominalDrive;
-    use super::super::testing::TestDrive;
+    use super::super::testing::{TestDrive, nominal};
     use super::{is_halved, rms};
     use crate::diagnose::verdict::Verdict;
 
     /// Less than the part of the effort from which a white force is unknown, and half of what is left: a force with a shape is there.
     #[test]
     fn a_friction_that_warms_up_and_a_tone_are_unknown_however_little_of_the_effort() {
-        let rig = NominalDrive {
-            inertia: 0.8,
-            viscous: 4.0,
-            is_rotary: false,
-            encoder: None,
-            resolution: 1e-5,
-            effects: Vec::new(),
-        };
+        let rig = nominal(0.8, 4.0);
         for drive in [
             TestDrive { cold: 0.06, encoder: 1e-6, ..TestDrive::PLAIN },
             TestDrive { tone: 0.012, encoder: 1e-6, ..TestDrive::PLAIN },

@@ -5,6 +5,7 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::law::{DriveLaw, Link, Side};
+use super::nominal::NominalDrive;
 use super::scales::Scales;
 use super::trial::DriveTrial;
 
@@ -12,6 +13,11 @@ use super::trial::DriveTrial;
 pub fn pair_law(stiffness: f64) -> (DriveLaw, Link) {
     let link = Link { stiffness, damping: 0.0, play: 0.0, load_share: 0.3, load_viscous: 0.0, encoder: Side::Motor };
     (DriveLaw { link: Some(link), ..DriveLaw::nominal(0.6, 0.0, 0.0) }, link)
+}
+
+/// What a rig file says of a drive along a line, of `inertia` (kg) and `viscous` friction (N s/m), and nothing else.
+pub fn nominal(inertia: f64, viscous: f64) -> NominalDrive {
+    NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() }
 }
 
 /// Sizes of a recording of [`TestDrive::PLAIN`], by and large.

@@ -32,7 +32,7 @@ pub struct DriveTrial {
     /// Two-sided density of the force sensor's noise, which the model feels as a force on the load, N^2 s or (N m)^2 s.
     pub force_density: f64,
     /// What took the sensors' noise out of effort and force; `None` where they are as recorded.
-    pub denoised: Option<Arc<WienerFilter>>,
+    pub noise_filter: Option<Arc<WienerFilter>>,
 }
 
 /// Periods after which a pause is a gap: what the drive did meanwhile is unknown, and the filter starts anew.
@@ -68,7 +68,7 @@ impl DriveTrial {
             load: None,
             force,
             force_density: 0.0,
-            denoised: None,
+            noise_filter: None,
         }
     }
 
@@ -87,13 +87,18 @@ impl DriveTrial {
         let recorded = [self.effort.clone(), force];
         let Some(filter) = WienerFilter::of(&recorded, levels) else { return self.clone() };
         let [effort, force] = filter.passed(&recorded);
-        Self { effort, force: self.force.is_some().then_some(force), denoised: Some(Arc::new(filter)), ..self.clone() }
+        Self {
+            effort,
+            force: self.force.is_some().then_some(force),
+            noise_filter: Some(Arc::new(filter)),
+            ..self.clone()
+        }
     }
 
     /// Variance of the white noise in the effort, N^2 or (N m)^2.
     #[must_use]
     pub fn effort_variance(&self) -> f64 {
-        let left = self.denoised.as_ref().map_or(0.0, |filter| filter.effort_noise_left());
+        let left = self.noise_filter.as_ref().map_or(0.0, |filter| filter.effort_noise_left());
         left.max(robust_white_variance(&self.effort))
     }
 
@@ -141,7 +146,7 @@ impl DriveTrial {
             load: self.load.clone(),
             force: self.force.clone(),
             force_density: self.force_density,
-            denoised: self.denoised.clone(),
+            noise_filter: self.noise_filter.clone(),
         }
     }
 

@@ -9,14 +9,11 @@ use std::sync::Arc;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
+use super::criteria::{LEAST_SPECTRUM_WIDTH, SPECTRUM_WIDTH};
 use super::noise::robust_white_variance;
 
-/// Fewest frequencies to each side over which a spectrum is averaged (P. J. Daniell, *J. R. Stat. Soc. Suppl.* 8, 1946, 88): 33 of half a period in the
-/// recording, of which one in two is free, tell a density to a quarter.
-const LEAST_HALF_WIDTH: usize = 16;
-
-/// The same as a part of the frequency: a spectrum is smooth on a logarithmic axis.
-const HALF_WIDTH_PART: f64 = 0.05;
+/// Fewest rows of a spectrum.
+const FEWEST_ROWS: usize = 64;
 
 /// Least variance of a noise as a part of its signal's mean square: below it a record is exact.
 const EXACT: f64 = 1e-12;
@@ -33,11 +30,11 @@ pub struct WienerFilter {
 }
 
 impl WienerFilter {
-    /// That of `signals` that hold noise of `levels` times the density of what changes from row to row: once for white noise, more for noise that remembers, and
-    /// zero for what is exact. `None` where they are too short for a spectrum.
+    /// That of `signals` that hold noise of `levels` times the density of what changes from row to row: once for white noise, more for noise that
+    /// remembers, and zero for what is exact. `None` where they are too short for a spectrum.
     #[must_use]
     pub fn of(signals: &Signals, levels: [f64; 2]) -> Option<Self> {
-        if signals[0].len() < 4 * LEAST_HALF_WIDTH {
+        if signals[0].len() < FEWEST_ROWS {
             return None;
         }
         let noise = [0, 1].map(|of| levels[of] * robust_white_variance(&signals[of]));
@@ -96,7 +93,7 @@ fn averaged(periodogram: &[Complex<f64>]) -> Vec<Complex<f64>> {
     }
     (0..half)
         .map(|at| {
-            let width = LEAST_HALF_WIDTH.max((HALF_WIDTH_PART * at as f64) as usize);
+            let width = LEAST_SPECTRUM_WIDTH.value().max(SPECTRUM_WIDTH * at as f64) as usize;
             let (first, end) = (at.saturating_sub(width), (at + width + 1).min(half));
             (sums[end] - sums[first]) / (end - first) as f64
         })

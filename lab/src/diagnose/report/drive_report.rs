@@ -161,7 +161,7 @@ fn slower_motion(outcome: &Outcome, coordinate: Coordinate) -> Option<Finding> {
 /// That noise was taken out of effort or force.
 fn noise_taken_out(outcome: &Outcome, coordinate: Coordinate) -> Option<Finding> {
     let largest = |of: usize| {
-        let filters = outcome.trials.iter().filter_map(|trial| trial.denoised.as_ref());
+        let filters = outcome.trials.iter().filter_map(|trial| trial.noise_filter.as_ref());
         filters.map(|filter| filter.noise[of].sqrt()).fold(0.0, f64::max)
     };
     let told = |name: &str, deviation: f64| {
