@@ -127,7 +127,7 @@ mod tests {
         let both = names(&["gravity_load", "coulomb_friction"]);
         assert!(is_the_same_law(&two, &both));
         assert!(!is_the_same_law(&one, &both));
-        assert!(!is_the_same_law(&two, &names(&["stribeck_friction"])));
+        assert!(!is_the_same_law(&two, &names(&["cogging", "coulomb_friction"])));
         assert!(!is_the_same_law(&two, &names(&["gravity_load", "stribeck_friction"])));
     }
 }
