@@ -78,7 +78,7 @@ impl Recorded<'_> {
     /// Effects in the rig file that cannot be.
     pub fn identified(&self) -> Result<Channels> {
         let mut refuted: Vec<&'static str> = Vec::new();
-        // Each time there is one effect less to try.
+        // Each round refutes an effect that was not refuted yet, and there are few: it ends.
         let mut channels = loop {
             let contact = self.contact(&[], &refuted)?;
             let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
@@ -90,7 +90,8 @@ impl Recorded<'_> {
                 widen(drive, &deviations_of_law(contact, &law.trials));
             }
             let channels = Channels { contact, drive, refuted: refuted.clone() };
-            let anew = self.refuted_by_the_drive(&channels, acted)?;
+            let mut anew = self.refuted_by_the_drive(&channels, acted)?;
+            anew.retain(|name| !refuted.contains(name));
             if anew.is_empty() {
                 break channels;
             }

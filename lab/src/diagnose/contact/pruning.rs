@@ -23,7 +23,7 @@ impl Search<'_> {
                 }
             }
             for at in self.nominal.model.terms.len()..best.model.terms.len() {
-                let Some((model, values)) = with_special_case(&best, at) else { continue };
+                let Some((model, values)) = self.with_special_case(&best, at) else { continue };
                 let less = self.data.fit(&model, &values, Effort::FULL);
                 if !self.is_worth(&best, &less) {
                     best = less;
@@ -51,23 +51,23 @@ impl Search<'_> {
         }
         self.data.fit(&model, &values, Effort::FULL)
     }
-}
 
-/// Model and values of `fit` with the effect in the place of term `at` that this is where one of its values is zero; `None` where there is none,
-/// or where the model has that effect already.
-fn with_special_case(fit: &Fit, at: usize) -> Option<(ContactModel, Vec<f64>)> {
-    let term = &fit.model.terms[at];
-    let start = fit.model.first_value_of(at);
-    let own = start..start + fit.model.count_of(term);
-    let (name, form, special) = term.effect.special_case(term.form, &fit.values[own.clone()])?;
-    if fit.model.times(name) > 0 {
-        return None;
+    /// Model and values of `fit` with the effect in the place of term `at` that this is where one of its values is zero; `None` where there is none,
+    /// where the model has that effect already, or where the drive speaks against it.
+    fn with_special_case(&self, fit: &Fit, at: usize) -> Option<(ContactModel, Vec<f64>)> {
+        let term = &fit.model.terms[at];
+        let start = fit.model.first_value_of(at);
+        let own = start..start + fit.model.count_of(term);
+        let (name, form, special) = term.effect.special_case(term.form, &fit.values[own.clone()])?;
+        if fit.model.times(name) > 0 || self.circumstances.refuted.contains(&name) {
+            return None;
+        }
+        let mut model = fit.model.clone();
+        model.terms[at] = Term { effect: find(name)?, form };
+        let mut values = fit.values.clone();
+        values.splice(own, special);
+        Some((model, values))
     }
-    let mut model = fit.model.clone();
-    model.terms[at] = Term { effect: find(name)?, form };
-    let mut values = fit.values.clone();
-    values.splice(own, special);
-    Some((model, values))
 }
 
 /// Model and values of `fit` without term `at`. What built on it alone becomes its simpler form.
@@ -103,20 +103,32 @@ mod tests {
     use super::super::testing::TestContact;
     use super::*;
 
-    /// A drift whose rate is nothing stands only where the bias that it is was never tried.
-    #[test]
-    fn a_drift_that_does_not_move_is_a_bias() {
+    /// What is left of a drift that does not move, where the drive has spoken against `refuted`.
+    fn pruned_drift(refuted: &[&'static str]) -> Fit {
         let trials = [TestContact { zero: 0.5, ..TestContact::PLAIN }.trial(1)];
         let data = || Data::new(&trials);
         let first = nominal_fit(&data(), &TestContact::nominal());
         let nominal = data().again(&first);
-        let search = Search { nominal, data: data(), coarse: data(), circumstances: Circumstances::default() };
+        let circumstances = Circumstances { refuted: refuted.to_vec(), ..Circumstances::default() };
+        let search = Search { nominal, data: data(), coarse: data(), circumstances };
         let drift = Term { effect: find("force_drift").unwrap(), form: 1 };
         let values: Vec<f64> = search.nominal.values.iter().copied().chain([0.0, 0.5]).collect();
         let fit = search.data.fit(&search.nominal.model.with(drift), &values, Effort::FULL);
-        let pruned = search.pruned(fit);
+        search.pruned(fit)
+    }
+
+    /// A drift whose rate is nothing stands only where the bias that it is was never tried.
+    #[test]
+    fn a_drift_that_does_not_move_is_a_bias() {
+        let pruned = pruned_drift(&[]);
         assert_eq!(pruned.model.names(0), ["force_bias"]);
         // 3000 rows of 0.02 N tell a constant to far better than a hundredth of a newton.
         assert!((pruned.values.last().unwrap() - 0.5).abs() < 0.01, "{:?}", pruned.values);
+    }
+
+    /// What the drive has spoken against does not come back by way of what it is a case of: the two channels would ask each other for ever.
+    #[test]
+    fn a_drift_is_no_bias_that_the_drive_has_spoken_against() {
+        assert_eq!(pruned_drift(&["force_bias"]).model.names(0), ["force_drift"]);
     }
 }
