@@ -52,6 +52,7 @@ pub mod outcome;
 pub mod outside_force;
 pub mod prepare;
 pub mod presliding;
+pub mod pruning;
 pub mod range;
 pub mod scales;
 pub mod selection;

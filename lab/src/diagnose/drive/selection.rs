@@ -1,13 +1,13 @@
 //! Which terms the recordings ask for: sets grown from the best few, and pruned.
 
-use super::candidates::{belongs, idle_friction, is_likelier, one_body, simpler, stribeck_for, tried, whole_friction};
+use super::candidates::{is_likelier, one_body, stribeck_for, tried};
 use super::criteria::{LEAST_GAIN_PER_VALUE, LEAST_PART_OF_EFFORT, LINK_PART, NEGLIGIBLE_PART};
 use super::filter::innovations;
 use super::fit::{Effort, Fit, fit};
 use super::law::Side;
 use super::likelihood::Data;
 use super::links;
-use super::model::{Model, index};
+use super::model::index;
 use super::scales::Scales;
 use super::term::Term;
 use crate::diagnose::so_far::so_far;
@@ -126,11 +126,15 @@ impl Search<'_> {
         Chosen { fit, sets: Vec::new() }
     }
 
-    /// Whether the best of `grown`, or `best`, leaves so much that a link is looked for.
+    /// Whether the best of `grown`, or `best`, leaves so much that a link is looked for. A law that is not worth it does not speak against one, but
+    /// where the nominal law leaves more than the whole effort: there no rigid law is worth it, and a link can always follow the rows.
     fn leaves_much(&self, grown: &[Fit], best: &Fit) -> bool {
-        let all = grown.iter().filter(|fit| !is_at_end(fit)).chain([best]);
+        let nominal = self.unexplained(&self.nominal);
+        let is_moved_otherwise = nominal > self.scales.effort;
+        let speaks = |fit: &&Fit| !is_at_end(fit) && (is_moved_otherwise || self.is_worth(fit, best));
+        let all = grown.iter().filter(speaks).chain([best]);
         let least = all.map(|fit| self.unexplained(fit)).fold(f64::INFINITY, f64::min);
-        least > LINK_PART * self.unexplained(&self.nominal)
+        least > LINK_PART * nominal
     }
 
     /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
@@ -189,62 +193,6 @@ impl Search<'_> {
         sets.extend(polished.clone());
         polished.filter(|fit| self.is_worth(fit, &best)).unwrap_or(best)
     }
-
-    /// The smaller `model` in the place of that of `fit`, fitted from `values`. A link can have stood for a part of its friction.
-    #[must_use]
-    pub fn lessened(&self, fit: &Fit, model: Model, values: Vec<f64>) -> Fit {
-        if model == self.nominal.model {
-            return self.nominal.clone();
-        }
-        let less = self.polished(&Fit { model, values, ..fit.clone() });
-        if fit.model.has_link() && !less.model.has_link() {
-            return self.polished(&whole_friction(&self.data, less));
-        }
-        less
-    }
-
-    /// `fit` without parts of its friction that ended where their search did.
-    fn without_idle_friction(&self, mut fit: Fit) -> Fit {
-        while let Some(at) = idle_friction(&fit) {
-            let (model, values) = fit.model.without(at, &fit.values);
-            fit = self.polished(&Fit { model, values, ..fit });
-        }
-        fit
-    }
-
-    /// `fit`, where what was added to `base` shows that terms found with that were too many, with the simpler law in the place of each, or without it:
-    /// a weak link, or a cogging, makes Stribeck friction of Coulomb friction. The rig file's own terms stay.
-    fn within_ends(&self, mut fit: Fit, base: &Fit) -> Fit {
-        let known = self.nominal.model.terms.len();
-        loop {
-            let is_at_end = |at: &usize| {
-                let term = &fit.model.terms[*at];
-                !term.is_link()
-                    && base.model.terms.contains(term)
-                    && term.is_at_end(&fit.values[fit.model.values_of(*at)], &fit.model.scales)
-            };
-            let ended = (known..fit.model.terms.len()).find(is_at_end);
-            let Some((model, values)) = ended.and_then(|at| simpler(&fit, at).into_iter().next()) else { return fit };
-            fit = self.polished(&Fit { model, values, ..fit });
-        }
-    }
-
-    /// `best` without the terms, or the refinements of a law, that are not worth having beside the others.
-    fn pruned(&self, mut best: Fit) -> Fit {
-        'again: loop {
-            for at in (self.nominal.model.terms.len()..best.model.terms.len()).rev() {
-                for (model, values) in simpler(&best, at) {
-                    let less = self.lessened(&best, model, values);
-                    let is_told = best.model.terms[at].is_told();
-                    if !(if is_told { self.is_worth(&best, &less) } else { belongs(&self.data, &best, &less) }) {
-                        best = less;
-                        continue 'again;
-                    }
-                }
-            }
-            return best;
-        }
-    }
 }
 
 fn is_at_end(fit: &Fit) -> bool {
@@ -293,51 +241,10 @@ fn hurries(fit: &Fit, nominal: &Fit) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::levenberg_marquardt::Ended;
+    use super::super::model::Model;
     use super::super::noise::Noise;
-    use super::super::testing::{SCALES, TestDrive};
+    use super::super::testing::{SCALES, TestDrive, search_over};
     use super::*;
-
-    /// Dry friction with a ripple along the way: alone it looks larger when creeping, beside the ripple it does not.
-    #[test]
-    fn a_refinement_that_ends_where_its_search_did_goes_when_another_term_comes() {
-        let drive = TestDrive { coulomb: 0.4, ripple: 0.3, ..TestDrive::PLAIN };
-        let trials = [drive.trial(4.0, 5)];
-        let data = Data { trials: &trials, least_encoder_variance: 0.3 * drive.encoder.powi(2) };
-        let fit = |terms: Vec<Term>, own: &[f64]| Fit {
-            model: Model { terms, scales: SCALES },
-            values: [&[0.8, 4.0, 0.0, 0.0], own].concat(),
-            noise: Noise { ln_disturbance: -8.0, ln_encoder: drive.encoder.powi(2).ln() },
-            log_likelihood: 0.0,
-            ended: Ended::Converged,
-        };
-        let wavenumber = std::f64::consts::TAU / 5e-3;
-        let creeping = fit(vec![Term::Stribeck], &[0.4, 0.2, 0.01]);
-        let search = Search {
-            data,
-            scales: SCALES,
-            nominal: fit(vec![], &[]),
-            band_hz: 20.0,
-            sides: Vec::new(),
-            is_asked: false,
-            effort_noise_density: 0.0,
-        };
-        let both = fit(vec![Term::Stribeck, Term::Cogging], &[0.4, 0.0, 0.01, 0.3, 0.0, wavenumber]);
-        let simpler = search.within_ends(both.clone(), &creeping);
-        assert_eq!(simpler.model.terms, [Term::Coulomb, Term::Cogging]);
-        // Four seconds tell the level and the ripple to some hundredths.
-        assert!(
-            (simpler.values[4] - 0.4).abs() < 0.02 && (simpler.values[5] - 0.3).abs() < 0.02,
-            "{:?}",
-            simpler.values
-        );
-        // A new term that ends there is not had in another form: it is none.
-        let new = fit(vec![Term::Cogging, Term::Stribeck], &[0.3, 0.0, wavenumber, 0.4, 0.0, 0.01]);
-        let beside = fit(vec![Term::Cogging], &[0.3, 0.0, wavenumber]);
-        assert_eq!(search.within_ends(new.clone(), &beside).model, new.model);
-        // Nor is one that the rig file holds.
-        let known = Search { nominal: creeping.clone(), ..search };
-        assert_eq!(known.within_ends(both.clone(), &creeping).model, both.model);
-    }
 
     #[test]
     fn a_link_that_needs_an_effort_a_row_before_it_is_recorded_is_not_believed() {
@@ -355,5 +262,25 @@ mod tests {
         assert!(!hurries(&linked(0.5 * earliest), &rigid(0.0)));
         // Where the nominal law needs that as well, the record is early; and a rigid law has no more to explain it by.
         assert!(!hurries(&linked(earliest), &rigid(earliest)) && !hurries(&rigid(earliest), &rigid(0.0)));
+    }
+
+    /// Dry friction that leaves nothing is all there is; the same at a level that the rows speak against is no reason not to look for a link.
+    #[test]
+    fn a_law_that_is_not_worth_it_does_not_speak_against_a_link() {
+        let drive = TestDrive { coulomb: 0.4, ..TestDrive::PLAIN };
+        let trials = [drive.trial(4.0, 6)];
+        let search = search_over(&trials, &drive);
+        let start = Fit {
+            model: search.nominal.model.with(Term::Coulomb),
+            values: [search.nominal.values.as_slice(), &[0.3]].concat(),
+            ..search.nominal.clone()
+        };
+        let right = search.polished(&start);
+        let mut wrong = right.clone();
+        wrong.values[index::INERTIA] *= 0.5;
+        wrong.log_likelihood = search.data.log_likelihood(&wrong.model, &wrong.values, &wrong.noise).0;
+        assert!(search.unexplained(&wrong) < 0.1 * search.unexplained(&search.nominal));
+        assert!(!search.leaves_much(&[right], &search.nominal));
+        assert!(search.leaves_much(&[wrong], &search.nominal));
     }
 }

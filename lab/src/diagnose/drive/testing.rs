@@ -4,9 +4,14 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::fit::{Effort, fit};
 use super::law::{DriveLaw, Link, Side};
+use super::likelihood::Data;
+use super::model::Model;
+use super::noise::Noise;
 use super::nominal::NominalDrive;
 use super::scales::Scales;
+use super::selection::Search;
 use super::trial::DriveTrial;
 
 /// A pair of bodies with the encoder on its motor, without friction.
@@ -184,4 +189,15 @@ impl TestDrive {
         }
         DriveTrial::new(format!("trial-{seed}.csv"), time, &position, effort, None, 1)
     }
+}
+
+/// A search over `trials` of a drive that the rig file knows rightly, its nominal law fitted.
+#[must_use]
+pub fn search_over<'a>(trials: &'a [DriveTrial], drive: &TestDrive) -> Search<'a> {
+    let data = Data { trials, least_encoder_variance: 0.3 * drive.encoder.powi(2) };
+    let model = Model { terms: Vec::new(), scales: SCALES };
+    let noise = Noise { ln_disturbance: -8.0, ln_encoder: drive.encoder.powi(2).ln() };
+    let nominal = fit(&data, &model, &[0.8, 4.0, 0.0, 0.0], noise, Effort::FULL);
+    let (sides, is_asked, effort_noise_density) = (Vec::new(), false, 0.0);
+    Search { data, scales: SCALES, nominal, band_hz: 20.0, sides, is_asked, effort_noise_density }
 }
