@@ -81,29 +81,52 @@ def contact_laws():
         case("plastic_set", lambda: Pressed(dent=0.25)),
         case("hysteresis (Bouc-Wen)", lambda: Pressed(loop=1.2, reach=0.0004)),
         case("stress_relaxation", lambda: Pressed(branch=600.0, fades=0.25)),
+        case("layered_stiffness", lambda: Pressed(spring=lambda depth: STIFFNESS * depth + 1500.0 * max(0.0, depth - 0.003))),
+        case("quadratic_damping", lambda: Pressed(drag=150.0)),
+        case("lost_motion", lambda: Pressed(play=0.0004)),
+        case("time_varying_stiffness", lambda: Pressed(stiffening=lambda time: 1.0 if time < 7.0 else 1.25)),
+        case("surface_motion", lambda: Pressed(moved=lambda time: 0.0004 * math.sin(2 * math.pi * 0.3 * time))),
     ]
 
 
+@dataclass
 class Pressed:
     """A law of the contact with a memory. It never pulls, but for what holds on to the tool."""
 
-    def __init__(self, spring=None, damping=None, pull=0.0, release=0.0, dent=0.0, loop=0.0, reach=1.0, branch=0.0, fades=1.0):
-        self.spring = spring or (lambda depth: STIFFNESS * depth)
-        self.damping = damping or (lambda depth: CONTACT_DAMPING)
-        self.pull, self.release, self.dent, self.loop, self.reach, self.branch, self.fades = (
-            pull, release, dent, loop, reach, branch, fades
-        )  # fmt: skip
-        self.deepest, self.strain, self.spring_of_branch, self.is_held = 0.0, 0.0, 0.0, False
+    spring: Callable = lambda depth: STIFFNESS * depth
+    damping: Callable = lambda depth: CONTACT_DAMPING
+    # N s^2/m^2, of the square of the speed.
+    drag: float = 0.0
+    # N, and m above the surface at which it lets go.
+    pull: float = 0.0
+    release: float = 0.0
+    # Share of the deepest contact that stays.
+    dent: float = 0.0
+    # N, and m over which it builds up.
+    loop: float = 0.0
+    reach: float = 1.0
+    # N/m, and s.
+    branch: float = 0.0
+    fades: float = 1.0
+    # m, whole width between the sensor and the tip.
+    play: float = 0.0
+    # Of the time in s: factor of the spring, and m by which the surface lies deeper.
+    stiffening: Callable = lambda time: 1.0
+    moved: Callable = lambda time: 0.0
+
+    def __post_init__(self):
+        self.time, self.tip, self.deepest, self.strain, self.spring_of_branch, self.is_held = 0.0, 0.0, 0.0, 0.0, 0.0, False
 
     def __call__(self, dt, position, velocity):
-        depth = position - SURFACE_M
+        depth, velocity = self.tip_within(dt, position, velocity)
         self.deepest = max(self.deepest, depth)
         depth -= self.dent * self.deepest
         if depth <= 0.0:
             self.strain = self.spring_of_branch = 0.0
             return self.neck(depth)
         self.is_held = True
-        force = self.spring(depth) + self.damping(depth) * velocity
+        force = self.stiffening(self.time) * self.spring(depth)
+        force += self.damping(depth) * velocity + self.drag * velocity * abs(velocity)
         if self.loop:
             # Bouc and Wen's with a sharpness of two, integrated as it moves.
             moved = velocity * dt / self.reach
@@ -113,6 +136,14 @@ class Pressed:
             self.spring_of_branch += (self.branch * velocity - self.spring_of_branch / self.fades) * dt
             force += self.spring_of_branch
         return max(force, 0.0) + (max(min(force, 0.0), -self.pull) if velocity < 0.0 else 0.0)
+
+    def tip_within(self, dt, position, velocity):
+        """Depth and rate of the tip, which the sensor takes along at the ends of its play, in what is touched, which may move."""
+        before, self.time = self.tip, self.time + dt
+        self.tip = min(max(before, position - self.play / 2), position + self.play / 2)
+        surface, earlier = self.moved(self.time), self.moved(self.time - dt)
+        velocity = (velocity if self.tip != before else 0.0) - (surface - earlier) / dt
+        return self.tip - SURFACE_M - surface, velocity
 
     def neck(self, depth):
         """Above the surface: what still holds on pulls as the spring would, and no more than `pull`."""

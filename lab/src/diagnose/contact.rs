@@ -3,6 +3,7 @@
 pub mod alternative;
 mod beside_motion;
 pub mod broken_line;
+mod change_point;
 pub mod circumstances;
 mod colour;
 pub mod composed;

@@ -1,5 +1,6 @@
 //! 95 % intervals of a fitted contact: from the curvature of least squares, and from leaving out stretches of the recordings.
 
+use super::change_point::jumps;
 use super::data::Data;
 use super::fit::Fit;
 use super::model::index;
@@ -7,7 +8,6 @@ use super::rest::Rest;
 use crate::diagnose::interval::{Clusters, Intervals, spread};
 use crate::diagnose::jackknife::stretch_of_rows;
 use crate::diagnose::linalg::energy;
-use crate::effects::Limit;
 
 /// Squared deviations that a jump changes from its instant to an end of its 95 % interval (J. Bai, *Rev. Econ. Stat.* 79, 1997, whose limit
 /// is the place of the greatest value of a Brownian motion with drift).
@@ -67,16 +67,6 @@ fn rounding(data: &Data<'_>, fit: &Fit) -> Vec<f64> {
     let variances = data.trials.iter().flat_map(|trial| &trial.position_variance);
     let slopes = below.iter().zip(&above).map(|(below, above)| (above - below) / (2.0 * step));
     slopes.zip(variances).map(|(slope, variance)| slope * variance.sqrt()).collect()
-}
-
-/// Which values of `fit` are instants at which its law jumps.
-fn jumps(fit: &Fit) -> Vec<usize> {
-    let terms = fit.model.terms.iter().enumerate().flat_map(|(nth, term)| {
-        let first = fit.model.first_value_of(nth);
-        let own = term.parameters().iter().enumerate();
-        own.filter(|(_, parameter)| parameter.limit == Limit::InstantOfJump).map(move |(offset, _)| first + offset)
-    });
-    terms.collect()
 }
 
 /// The end of the interval of the instant `at` on the side of `bound`, no farther than that: where the rows that lie between have changed

@@ -83,7 +83,7 @@ impl Effect for TimeVaryingStiffness {
         }
         match form {
             0 => vec![Start::sized(&[0.1 / end], &[0])],
-            1 => linear(0.04, 0.96, 24).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
+            1 => linear(0.2, 0.8, 4).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
             2 => geometric(0.03, 1.0, 5).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
             4 => geometric(0.003, 0.3, 6).iter().map(|part| Start::sized(&[0.1, part * end], &[0])).collect(),
             _ => Vec::new(),
