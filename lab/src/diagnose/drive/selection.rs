@@ -264,7 +264,7 @@ mod tests {
         assert!(!hurries(&linked(earliest), &rigid(earliest)) && !hurries(&rigid(earliest), &rigid(0.0)));
     }
 
-    /// Dry friction that leaves nothing is all there is; the same at a level that the rows speak against is no reason not to look for a link.
+    /// Dry friction that leaves nothing is all there is; the same with half of the inertia, which the rows speak against, is no reason not to look for a link.
     #[test]
     fn a_law_that_is_not_worth_it_does_not_speak_against_a_link() {
         let drive = TestDrive { coulomb: 0.4, ..TestDrive::PLAIN };
