@@ -2,6 +2,7 @@
 
 use super::data::Data;
 use super::fit::{Effort, Fit};
+use super::model::ContactModel;
 use crate::effects::Limit;
 
 /// Rounds in which an instant is looked for beside the values that the one before gave.
@@ -27,7 +28,7 @@ impl Data<'_> {
         for _ in 0..if jumps.is_empty() { 0 } else { ROUNDS } {
             let mut values = fit.values.clone();
             for &at in &jumps {
-                values[at] = self.least_squares_instant(&Fit { values: values.clone(), ..fit.clone() }, at);
+                values[at] = self.least_squares_instant(&fit.model, &values, at);
             }
             let moved = self.fit_holding(&fit.model, &values, effort, &|_| false);
             if moved.energy >= fit.energy {
@@ -38,14 +39,14 @@ impl Data<'_> {
         fit
     }
 
-    /// The instant `at` of `fit`, s, that leaves the least: of the rows before it the squares without the jump count, of those after it the ones with
-    /// it. For a law that remembers what it did before, that is nearly so.
-    fn least_squares_instant(&self, fit: &Fit, at: usize) -> f64 {
-        let range = fit.model.ranges(&fit.values)[at];
+    /// The instant in the place `at` of `values`, s, that leaves the least: of the rows before it the squares without the jump count, of those after it
+    /// the ones with it. For a law that remembers what it did before, that is nearly so.
+    fn least_squares_instant(&self, model: &ContactModel, values: &[f64], at: usize) -> f64 {
+        let range = model.ranges(values)[at];
         let squares = |instant: f64| {
-            let mut values = fit.values.clone();
+            let mut values = values.to_vec();
             values[at] = instant;
-            self.weighted_residual(&fit.model, &values).into_iter().map(|residual| residual * residual)
+            self.weighted_residual(model, &values).into_iter().map(|residual| residual * residual)
         };
         let times = self.trials.iter().flat_map(|trial| trial.time.iter().copied());
         let mut rows: Vec<(f64, f64)> =

@@ -74,7 +74,6 @@ impl Search<'_> {
 mod tests {
     use super::super::law::Side;
     use super::super::levenberg_marquardt::Ended;
-    use super::super::likelihood::Data;
     use super::super::noise::Noise;
     use super::super::term::Term;
     use super::super::testing::{SCALES, TestDrive, TestLink, search_over};
@@ -85,7 +84,7 @@ mod tests {
     fn a_refinement_that_ends_where_its_search_did_goes_when_another_term_comes() {
         let drive = TestDrive { coulomb: 0.4, ripple: 0.3, ..TestDrive::PLAIN };
         let trials = [drive.trial(4.0, 5)];
-        let data = Data { trials: &trials, least_encoder_variance: 0.3 * drive.encoder.powi(2) };
+        let search = search_over(&trials, &drive);
         let fit = |terms: Vec<Term>, own: &[f64]| Fit {
             model: Model { terms, scales: SCALES },
             values: [&[0.8, 4.0, 0.0, 0.0], own].concat(),
@@ -95,15 +94,6 @@ mod tests {
         };
         let wavenumber = std::f64::consts::TAU / 5e-3;
         let creeping = fit(vec![Term::Stribeck], &[0.4, 0.2, 0.01]);
-        let search = Search {
-            data,
-            scales: SCALES,
-            nominal: fit(vec![], &[]),
-            band_hz: 20.0,
-            sides: Vec::new(),
-            is_asked: false,
-            effort_noise_density: 0.0,
-        };
         let both = fit(vec![Term::Stribeck, Term::Cogging], &[0.4, 0.0, 0.01, 0.3, 0.0, wavenumber]);
         let simpler = search.within_ends(both.clone(), &creeping);
         assert_eq!(simpler.model.terms, [Term::Coulomb, Term::Cogging]);

@@ -126,15 +126,14 @@ impl Search<'_> {
         Chosen { fit, sets: Vec::new() }
     }
 
-    /// Whether the best of `grown`, or `best`, leaves so much that a link is looked for. A law that is not worth it does not speak against one, but
-    /// where the nominal law leaves more than the whole effort: there no rigid law is worth it, and a link can always follow the rows.
+    /// Whether `best`, and each of `grown` that speaks against a link, leaves so much that one is looked for. A law that is not worth it does not
+    /// speak, but where the nominal law leaves more than the whole effort: there no rigid law is worth it, and a link can always follow the rows.
     fn leaves_much(&self, grown: &[Fit], best: &Fit) -> bool {
         let nominal = self.unexplained(&self.nominal);
         let is_moved_otherwise = nominal > self.scales.effort;
-        let speaks = |fit: &&Fit| !is_at_end(fit) && (is_moved_otherwise || self.is_worth(fit, best));
-        let all = grown.iter().filter(speaks).chain([best]);
-        let least = all.map(|fit| self.unexplained(fit)).fold(f64::INFINITY, f64::min);
-        least > LINK_PART * nominal
+        let leaves_little = |fit: &Fit| self.unexplained(fit) <= LINK_PART * nominal;
+        let speaks = |fit: &Fit| !is_at_end(fit) && (is_moved_otherwise || self.is_worth(fit, best));
+        !leaves_little(best) && !grown.iter().any(|fit| leaves_little(fit) && speaks(fit))
     }
 
     /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
