@@ -53,16 +53,19 @@ fn an_attraction_pulls_by_its_force_until_its_height() {
 }
 
 #[test]
-fn a_spring_that_stiffens_exponentially_is_its_equation() {
-    let rig = with(&rig(REFERENCE, false), "[[effect]]\nname = \"nonlinear_stiffness\"\nstiffening_1_m = 120\n");
-    let recording = run(&rig);
-    let mut most = 0.0f64;
-    for (row, x, v) in inside(&rig) {
-        let expected = (STIFFNESS * (120.0 * x).exp_m1() / 120.0 + DAMPING * v).max(0.0);
-        close(force(&recording)[row], expected, 1e-12, "force");
-        most = most.max(expected - STIFFNESS * x);
+fn a_spring_that_stiffens_or_softens_exponentially_is_its_equation() {
+    for growth in [120.0f64, -120.0] {
+        let table = format!("[[effect]]\nname = \"nonlinear_stiffness\"\nstiffening_1_m = {growth}\n");
+        let rig = with(&rig(REFERENCE, false), &table);
+        let recording = run(&rig);
+        let mut most = 0.0f64;
+        for (row, x, v) in inside(&rig) {
+            let expected = (STIFFNESS * (growth * x).exp_m1() / growth + DAMPING * v).max(0.0);
+            close(force(&recording)[row], expected, 1e-12, "force");
+            most = most.max((expected - STIFFNESS * x).abs());
+        }
+        assert!(most > 1.0, "{most} N of it");
     }
-    assert!(most > 1.0, "{most} N of it");
 }
 
 /// Every finer form beside the law that it refines: at its own exponent or far from its corner it is that law.
@@ -70,7 +73,11 @@ fn a_spring_that_stiffens_exponentially_is_its_equation() {
 fn finer_forms_are_their_equations() {
     let gradual = |x: f64| 1e-3 * ((x - 5e-3) / 1e-3).exp().ln_1p();
     type Law = Box<dyn Fn(f64, f64) -> f64>;
-    let laws: [(&str, Law); 3] = [
+    let laws: [(&str, Law); 4] = [
+        (
+            "name = \"nonlinear_stiffness\"\nsoftening_1_m = 40\n",
+            Box::new(|x, _| STIFFNESS * (x / (1.0 + 40.0 * x) - x)),
+        ),
         (
             "name = \"hunt_crossley_damping\"\ndamping_there_n_s_m = 9\nexponent = 1.5\nreference_depth_m = 0.006\n",
             Box::new(|x, v| 9.0 * (x / 6e-3).powf(1.5) * v),

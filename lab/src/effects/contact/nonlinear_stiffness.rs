@@ -48,7 +48,18 @@ static SPEC: EffectSpec = EffectSpec {
             parameters: &[Parameter::new(
                 "stiffening",
                 Word::new("1/m", "1/rad"),
-                "growth of the tangent stiffness with depth, as a share of it",
+                "growth of the tangent stiffness with depth, as a share of it; below zero it softens",
+                f64::NEG_INFINITY,
+                f64::INFINITY,
+            )],
+        },
+        Form {
+            name: "hyperbolic",
+            equation: "spring = K x / (1 + softening x)",
+            parameters: &[Parameter::new(
+                "softening",
+                Word::new("1/m", "1/rad"),
+                "one over the depth at which half of K is left as secant stiffness",
                 0.0,
                 f64::INFINITY,
             )],
@@ -56,8 +67,15 @@ static SPEC: EffectSpec = EffectSpec {
     ],
     excited_by: "contacts that reach two or more depths",
     resembles: &["layered_stiffness", "plastic_set"],
-    source: "H. Hertz (1881); I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47; Duffing's cubic spring; soft tissue: Y. C. Fung, Am. J. Physiol. 213 (1967) 1532",
+    source: "H. Hertz (1881); I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47; Duffing's cubic spring; soft tissue: Y. C. Fung, Am. J. Physiol. 213 (1967) 1532; hyperbolic: R. L. Kondner, J. Soil Mech. Found. Div. ASCE 89 (1963) 115",
 };
+
+/// Indices of the forms.
+mod form {
+    pub const POWER_LAW: usize = 0;
+    pub const EXPONENTIAL: usize = 2;
+    pub const HYPERBOLIC: usize = 3;
+}
 
 impl Effect for NonlinearStiffness {
     fn spec(&self) -> &'static EffectSpec {
@@ -65,29 +83,36 @@ impl Effect for NonlinearStiffness {
     }
 
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
-        if form == 0 {
-            let exponents = [0.6, 0.8, 1.2, 1.5, 2.0, 2.8, 4.0];
-            return exponents.iter().map(|exponent| Start::at(&[*exponent, scene.depth])).collect();
+        let per_depth = |growths: &[f64]| {
+            let starts = growths.iter().map(|growth| Start::at(&[growth / scene.depth.max(f64::MIN_POSITIVE)]));
+            starts.collect()
+        };
+        match form {
+            form::POWER_LAW => {
+                let exponents = [0.6, 0.8, 1.2, 1.5, 2.0, 2.8, 4.0];
+                exponents.iter().map(|exponent| Start::at(&[*exponent, scene.depth])).collect()
+            }
+            form::EXPONENTIAL => per_depth(&[-1.0, -0.3, 0.3, 1.0, 2.5]),
+            form::HYPERBOLIC => per_depth(&[0.3, 1.0, 4.0]),
+            _ => vec![Start::sized(&[0.1 * scene.stiffness / scene.depth.powi(2)], &[0])],
         }
-        if form == 2 {
-            let growths = [0.3, 1.0, 2.5].map(|growth| growth / scene.depth.max(f64::MIN_POSITIVE));
-            return growths.iter().map(|growth| Start::at(&[*growth])).collect();
-        }
-        vec![Start::sized(&[0.1 * scene.stiffness / scene.depth.powi(2)], &[0])]
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], _state: &mut EffectState, touch: &mut ContactState) {
         let depth = touch.depth.abs();
-        if form == 0 {
-            let (exponent, reference) = (values[0], values[1]);
-            if reference > 0.0 && depth > 0.0 {
-                touch.spring = touch.stiffness * touch.depth * (depth / reference).powf(exponent - 1.0);
+        let straight = touch.stiffness * touch.depth;
+        match form {
+            form::POWER_LAW if values[1] > 0.0 && depth > 0.0 => {
+                touch.spring = straight * (depth / values[1]).powf(values[0] - 1.0);
             }
-        } else if form == 1 {
-            touch.spring += values[0] * touch.depth * depth * depth;
-        } else if values[0] > 0.0 {
-            let growth = (values[0] * depth).min(MAX_EXPONENT);
-            touch.spring = (touch.stiffness * growth.exp_m1() / values[0]).copysign(touch.depth);
+            form::POWER_LAW => {}
+            form::EXPONENTIAL if values[0] != 0.0 => {
+                let growth = (values[0] * depth).min(MAX_EXPONENT);
+                touch.spring = (touch.stiffness * growth.exp_m1() / values[0]).copysign(touch.depth);
+            }
+            form::EXPONENTIAL => {}
+            form::HYPERBOLIC => touch.spring = straight / (1.0 + values[0] * depth),
+            _ => touch.spring += values[0] * touch.depth * depth * depth,
         }
     }
 }
