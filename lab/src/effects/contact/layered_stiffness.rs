@@ -1,8 +1,8 @@
 //! Further layers under the first: a boundary, a stop, or a pocket in which the force falls before it rises again.
 
 use crate::effects::{
-    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start, linear, ramp,
-    rounded,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
+    linear, ramp, rounded,
 };
 use crate::rig::Word;
 
@@ -18,7 +18,8 @@ const ADDED_STIFFNESS: Parameter = Parameter::new(
 );
 
 const LAYER_DEPTH: Parameter =
-    Parameter::new("layer_depth", Word::new("m", "rad"), "depth of the boundary", 0.0, f64::INFINITY);
+    Parameter::new("layer_depth", Word::new("m", "rad"), "depth of the boundary", 0.0, f64::INFINITY)
+        .within(Limit::ResolvableLength);
 
 const fn added(name: &'static str) -> Parameter {
     let meaning = "what the next layer adds to the one above; below zero where it is softer, or where the force falls";
@@ -27,6 +28,7 @@ const fn added(name: &'static str) -> Parameter {
 
 const fn boundary(name: &'static str) -> Parameter {
     Parameter::new(name, Word::new("m", "rad"), "depth of that boundary", 0.0, f64::INFINITY)
+        .within(Limit::ResolvableLength)
 }
 
 static SPEC: EffectSpec = EffectSpec {

@@ -11,6 +11,8 @@ use crate::rig::Word;
 /// See [`SPEC`].
 pub struct TimeVaryingStiffness;
 
+const TIME_CONSTANT: Parameter =
+    Parameter::new("time_constant", SECOND, "of the change", 0.0, f64::INFINITY).within(Limit::ResolvableTime);
 const CHANGE: Parameter = Parameter::new("change", Word::same("1"), "change of K over K at the start", -0.98, 50.0);
 const SECOND: Word = Word::same("s");
 
@@ -44,7 +46,7 @@ static SPEC: EffectSpec = EffectSpec {
         Form {
             name: "settling",
             equation: "K(t) = K (1 + change (1 - exp(-t / time_constant)))",
-            parameters: &[CHANGE, Parameter::new("time_constant", SECOND, "of the change", 0.0, f64::INFINITY)],
+            parameters: &[CHANGE, TIME_CONSTANT],
         },
         Form {
             name: "wave",
@@ -59,7 +61,7 @@ static SPEC: EffectSpec = EffectSpec {
         Form {
             name: "settling_in_contact",
             equation: "K(t) = K (1 + change exp(-s / time_constant)), s since the tool touched",
-            parameters: &[CHANGE, Parameter::new("time_constant", SECOND, "of the change", 0.0, f64::INFINITY)],
+            parameters: &[CHANGE, TIME_CONSTANT],
         },
     ],
     excited_by: "the same contact repeated, early and late",

@@ -13,6 +13,12 @@ pub struct MainsHum;
 /// Frequencies of mains, Hz.
 const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 
+/// Part by which they may be off: EN 50160, networks that stand alone.
+const MAINS_TOLERANCE: f64 = 0.02;
+
+/// Frequencies that are tried on either side of each: those of a minute.
+const MOST_TRIED: f64 = 240.0;
+
 const NEWTON: Word = Word::new("N", "N m");
 
 static SPEC: EffectSpec = EffectSpec {
@@ -45,10 +51,10 @@ impl Effect for MainsHum {
     }
 
     fn frequency_search(&self, _form: usize, scene: &ExcitationStats) -> Option<FrequencySearch> {
-        // The mains keep their frequency to a few tenths of a per cent; over a long trial that is several turns.
+        // Over a long trial what the mains may be off by is many turns.
         let apart = 0.25 / scene.duration;
         let band = |mains: f64| {
-            let most = (0.004 * mains / apart).ceil().clamp(2.0, 60.0);
+            let most = (MAINS_TOLERANCE * mains / apart).ceil().clamp(2.0, MOST_TRIED);
             (mains - most * apart, apart, 2 * most as usize + 1)
         };
         let frequencies: Vec<_> = MAINS_HZ.into_iter().filter(|mains| *mains < 0.42 / scene.step).map(band).collect();
