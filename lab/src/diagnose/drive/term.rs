@@ -2,7 +2,8 @@
 
 use super::course::{Along, Course, Varying};
 use super::criteria::{
-    LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT, MOST_LOAD_SHARE, SLOWEST_SWING,
+    LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LOAD_SHARE_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT,
+    MOST_LOAD_SHARE, SLOWEST_SWING,
 };
 use super::curve::Curve;
 use super::law::{DriveLaw, Link, Periodic, Side};
@@ -144,7 +145,6 @@ impl Term {
         let fastest = 4.0 / scales.period_s;
         let stiffness = Range::relative(scales.inertia * swing * swing, scales.inertia * fastest * fastest);
         let damping = Range::relative(1e-2 * scales.inertia / scales.duration_s, scales.inertia / scales.period_s);
-        let share = Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1);
         let friction_share = Range::absolute(0.0, 1.0, 0.1);
         match self {
             Self::Coulomb => vec![positive],
@@ -173,10 +173,10 @@ impl Term {
                 vec![Range::absolute(0.2 * scales.effort, scales.peak_effort, 0.02 * scales.effort)]
             }
             Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
-            Self::Compliance(_) => vec![stiffness, damping, share, friction_share],
-            Self::Play(_) => {
+            Self::Compliance(side) => vec![stiffness, damping, share_of_load(*side), friction_share],
+            Self::Play(side) => {
                 let play = Range::relative(0.05 * scales.resolution, 0.2 * scales.travel);
-                vec![stiffness, damping, share, play, friction_share]
+                vec![stiffness, damping, share_of_load(*side), play, friction_share]
             }
             Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],
             Self::ForceDelay => vec![Range::absolute(-2.0 * scales.period_s, 0.05, scales.period_s)],
@@ -227,7 +227,9 @@ impl Term {
             Self::Stribeck => &[0, 1, 2],
             Self::AsymmetricCoulomb | Self::Sublinear => &[0, 1],
             Self::Cogging => &[2],
-            Self::Compliance(_) => &[0, 2],
+            // Seen from the load alone, one share of the inertia is as good as another (see [`share_of_load`]).
+            Self::Compliance(Side::Load) => &[0],
+            Self::Compliance(Side::Motor) => &[0, 2],
             Self::Play(_) => &[2, 3],
             _ => &[],
         }
@@ -300,6 +302,19 @@ impl Term {
     }
 }
 
+/// Range of the load's share of the inertia, of a link whose encoder sits on `side`.
+///
+/// From the effort to the load's position the link is (c s + k) / (m1 m2 s^4 + (m1 + m2) (c s + k) s^2): without the motor's position the motion tells
+/// the sum of the inertias and their product over the stiffness, and not the share. It is taken to be about half
+/// of it then, as where both are matched for the greatest acceleration.
+fn share_of_load(side: Side) -> Range {
+    let share = Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1);
+    match side {
+        Side::Motor => share,
+        Side::Load => share.known(Prior { mean: 0.5, deviation: LOAD_SHARE_DEVIATION.value() }),
+    }
+}
+
 /// Of a pattern that repeats every `pitch`.
 #[must_use]
 pub fn wavenumber(pitch: f64) -> f64 {
@@ -343,6 +358,11 @@ mod tests {
         };
         assert!(told(&[0, 2]) && told(&[0, 1, 2, 3]));
         assert!(!told(&[0, 1, 3]) && !told(&[1, 2, 3]) && !told(&[]));
+        // Seen from the load alone the share is not told, and not asked for.
+        let mut from_load = whole.clone();
+        from_load[0] = [1.1 * from_load[0][0], 2.0 * from_load[0][0]];
+        assert!(!Term::Compliance(Side::Load).is_undetermined(&from_load, &SCALES));
+        assert!(link.is_undetermined(&from_load, &SCALES));
         // From an end of the range to within it, something is told.
         let mut half = whole.clone();
         half[0][0] *= 2.0;
