@@ -181,26 +181,10 @@ mod tests {
     use super::super::nominal::nominal_fit;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
-    use rand::SeedableRng as _;
-    use rand_distr::{Distribution as _, StandardNormal};
 
     /// `contact` with noise beside the sensor's white one, of deviation `size` and a memory of one row.
     fn with_memory(contact: &TestContact, size: f64, seed: u64) -> ContactTrial {
-        with_a_memory_of(1.0, contact, size, seed)
-    }
-
-    /// The same with a memory of so many `rows`.
-    fn with_a_memory_of(rows: f64, contact: &TestContact, size: f64, seed: u64) -> ContactTrial {
-        let mut recording = contact.recording(seed);
-        let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed + 1000);
-        let kept = f64::exp(-1.0 / rows);
-        let mut noise = 0.0;
-        for force in recording.force.as_mut().unwrap() {
-            let new: f64 = StandardNormal.sample(&mut random);
-            noise = kept * noise + size * (1.0 - kept * kept).sqrt() * new;
-            *force += noise;
-        }
-        TestContact::seen(&recording)
+        contact.remembering(1.0, size, seed)
     }
 
     /// What is found behind the nominal law's residual of two trials, over what is stated.
@@ -227,7 +211,7 @@ mod tests {
     /// Five rows of memory, and free motion in pieces shorter than what details of that memory need: the whole power is ten of the sensor's.
     #[test]
     fn a_memory_longer_than_the_details_of_free_motion_is_heard_in_it() {
-        let trials = [1, 2].map(|seed| with_a_memory_of(5.0, &TestContact::PLAIN, 3.0 * FORCE_NOISE, seed));
+        let trials = [1, 2].map(|seed| TestContact::PLAIN.remembering(5.0, 3.0 * FORCE_NOISE, seed));
         let power = power_behind(&trials);
         assert!((7.0..12.0).contains(&power), "{power}");
         // A neck that pulls near the surface, and the bend of a spring, are no noise: white noise stays what it is.

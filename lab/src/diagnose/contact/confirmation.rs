@@ -1,7 +1,7 @@
 //! Which of the effects that were found rows confirm that no fit saw, and the recordings tell from none.
 
 use super::criteria::{COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_TOLD_SHARE, NOISE_POWER_KNOWN_TO};
-use super::data::{Data, is_limited_by_rounding};
+use super::data::Data;
 use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::intervals;
@@ -82,8 +82,7 @@ fn share_taken(left: f64, held: f64, expected: f64) -> f64 {
 /// Whether a law that leaves `without`, N or N m in root mean square, leaves no more than the encoder's rounding does where that is most of the
 /// sensors' noise: it repeats with the place, and any law of the place takes some of it.
 fn is_within_rounding(data: &Data<'_>, without: f64) -> bool {
-    let noise = data.expected_noise();
-    without < noise && is_limited_by_rounding(data.trials, noise)
+    without < data.expected_noise() && data.is_limited_by_rounding()
 }
 
 /// Values that are fitted in `more` and not in `less`.

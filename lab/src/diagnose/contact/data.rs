@@ -16,19 +16,12 @@ pub struct Data<'a> {
     pub noise: Vec<Vec<f64>>,
     /// One over the deviation that is expected of each row; zero where a row does not count.
     pub weights: Vec<Vec<f64>>,
-    /// Whether the sensors' noise is as their figures say; else it is what the law leaves that the rows were weighed by.
-    pub noise_is_as_stated: bool,
+    /// Power of the sensors' noise over what their figures say: one, or by what the law leaves that the rows were weighed by.
+    pub noise_factor: f64,
 }
 
 /// Step of a finite difference, in sizes of the value.
 const DIFFERENCE: f64 = 1e-4;
-
-/// Whether the errors of the position are worth more force in the contact of `trials` than the force sensor's noise is, where both together are
-/// expected to leave `noise`, N or N m.
-#[must_use]
-pub fn is_limited_by_rounding(trials: &[ContactTrial], noise: f64) -> bool {
-    noise > ROUNDING_LIMITS * trials.iter().map(|trial| trial.force_variance.sqrt()).fold(0.0, f64::max)
-}
 
 impl<'a> Data<'a> {
     /// `trials` whose rows are worth what the force sensor alone leaves of them.
@@ -39,7 +32,7 @@ impl<'a> Data<'a> {
             let rows = trial.counts.iter().zip(noise);
             rows.map(|(counts, variance)| if *counts { variance.sqrt().recip() } else { 0.0 }).collect()
         });
-        Self { trials, weights: weights.collect(), noise, noise_is_as_stated: true }
+        Self { trials, weights: weights.collect(), noise, noise_factor: 1.0 }
     }
 
     /// Rows that count.
@@ -61,6 +54,14 @@ impl<'a> Data<'a> {
         let rows = self.weights.iter().flatten().zip(self.noise.iter().flatten()).filter(|(weight, _)| **weight > 0.0);
         let (sum, count) = rows.fold((0.0, 0usize), |(sum, count), (_, variance)| (sum + variance, count + 1));
         (sum / count.max(1) as f64).sqrt()
+    }
+
+    /// Whether the errors of the position are worth more force in the contact than the force sensor's noise is: by the sensors' figures where
+    /// noise that remembers is louder than these.
+    #[must_use]
+    pub fn is_limited_by_rounding(&self) -> bool {
+        let force_noise = self.trials.iter().map(|trial| trial.force_variance.sqrt()).fold(0.0, f64::max);
+        self.expected_noise() > ROUNDING_LIMITS * self.noise_factor.max(1.0).sqrt() * force_noise
     }
 
     /// Measured less predicted force of trial `trial`, N or N m.

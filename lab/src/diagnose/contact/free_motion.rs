@@ -35,6 +35,32 @@ pub fn has_free_motion(trials: &[ContactTrial], fit: &Fit) -> bool {
     rows as f64 >= LEAST_PART_OF_COEFFICIENTS * all as f64
 }
 
+/// What a force of the height alone, the same on the way in as on the way out, leaves of the force in free motion, and what `residual`, of a law,
+/// leaves there: mean squares over what is stated. `None` where it is too short.
+#[must_use]
+pub fn left_by_height_and_law(
+    trials: &[ContactTrial],
+    fit: &Fit,
+    noise: &[Vec<f64>],
+    residual: &[Vec<f64>],
+) -> Option<[f64; 2]> {
+    let (mut heights, mut forces, mut left) = (Vec::new(), Vec::new(), 0.0);
+    for (number, trial) in trials.iter().enumerate() {
+        let surface = fit.model.surface(&fit.values, number);
+        for row in (0..trial.len()).filter(|row| trial.position[*row] <= surface && noise[number][*row].is_finite()) {
+            let deviation = noise[number][row].sqrt();
+            heights.push(surface - trial.position[row]);
+            forces.push(trial.force[row] / deviation);
+            left += (residual[number][row] / deviation).powi(2);
+        }
+    }
+    let rows = forces.len() as f64;
+    let mean = forces.iter().sum::<f64>() / rows.max(1.0);
+    let squares: f64 = forces.iter().map(|force| (force - mean).powi(2)).sum();
+    let by_height = squares * (1.0 - correlation_ratio(&heights, &forces));
+    (forces.len() >= LEAST_ROWS && !fit.model.bilateral).then(|| [by_height / rows, left / rows])
+}
+
 /// Mean square in free motion over what is stated, of what is left beside the mean of each of [`LEAST_STRETCHES`] stretches or more, and beside
 /// the motion; zero where it is too short. Where it is not the same near the surface and far from it, the lesser one: what pulls the tool near
 /// it, as a neck does, is no noise.
@@ -65,6 +91,63 @@ pub fn free_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residu
     }
 }
 
+/// Where a row lies.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    Free,
+    InContact,
+}
+
+/// Power of what is left in free motion, beside each trial's mean there, or in contact, over what is stated, and how many squares tell it;
+/// `None` where they are too few.
+fn told_of(
+    trials: &[ContactTrial],
+    fit: &Fit,
+    noise: &[Vec<f64>],
+    residual: &[Vec<f64>],
+    place: Place,
+) -> Option<Told> {
+    let mut runs: Vec<Vec<f64>> = Vec::new();
+    for (number, trial) in trials.iter().enumerate() {
+        let surface = fit.model.surface(&fit.values, number);
+        let rows: Vec<usize> = (0..trial.len())
+            .filter(|row| {
+                noise[number][*row].is_finite() && (trial.position[*row] <= surface) == (place == Place::Free)
+            })
+            .collect();
+        let left = |row: &usize| residual[number][*row] / noise[number][*row].sqrt();
+        let mean = match place {
+            Place::Free => rows.iter().map(left).sum::<f64>() / rows.len().max(1) as f64,
+            Place::InContact => 0.0,
+        };
+        let together = rows.chunk_by(|before, after| before + 1 == *after);
+        runs.extend(together.map(|run| run.iter().map(|row| left(row) - mean).collect::<Vec<_>>()));
+    }
+    let rows: usize = runs.iter().map(Vec::len).sum();
+    if rows < LEAST_ROWS {
+        return None;
+    }
+    let squares: f64 = runs.iter().map(|run| energy(run)).sum();
+    // What wanders for longer than a run is one error of all of its rows (B. R. Moulton, *Rev. Econ. Stat.* 72, 1990).
+    let of_runs: f64 =
+        runs.iter().map(|run| run.iter().sum::<f64>().powi(2)).sum::<f64>() / squares.max(f64::MIN_POSITIVE);
+    let memory = integrated_autocorrelation(&runs.iter().map(Vec::as_slice).collect::<Vec<_>>()).max(of_runs);
+    Some(Told { power: squares / rows as f64, freedoms: rows as f64 / memory })
+}
+
+/// Power of the sensor's noise, over what is stated, by free motion and contact together, where what `fit` leaves in contact is no more than what
+/// is left in free motion, in which nothing is touched: no law of the contact leaves it. `None` where it is more, or where free motion has not as
+/// many independent squares as [`LEAST_STRETCHES`] to tell its power by.
+#[must_use]
+pub fn power_of_all(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residual: &[Vec<f64>]) -> Option<f64> {
+    if !has_free_motion(trials, fit) {
+        return None;
+    }
+    let free = told_of(trials, fit, noise, residual, Place::Free)?;
+    let in_contact = told_of(trials, fit, noise, residual, Place::InContact)?;
+    (free.freedoms >= LEAST_STRETCHES.value() && !in_contact.is_more_than(&free)).then(|| in_contact.pooled(&free))
+}
+
 /// A power, and how many independent squares tell it.
 struct Told {
     power: f64,
@@ -75,10 +158,19 @@ impl Told {
     /// Both together where their ratio is within what chance makes of it, else the lesser one: ln of the ratio of two means of squares has a
     /// variance of two over the freedoms of each (M. S. Bartlett, D. G. Kendall, *Suppl. J. R. Statist. Soc.* 8, 1946).
     fn with(&self, other: &Self) -> f64 {
-        let deviation = (2.0 / self.freedoms + 2.0 / other.freedoms).sqrt();
-        if (self.power / other.power).ln().abs() > NORMAL_97_5 * deviation {
+        if self.is_more_than(other) || other.is_more_than(self) {
             return self.power.min(other.power);
         }
+        self.pooled(other)
+    }
+
+    /// Whether it is more than `other` by what chance does not make of their ratio.
+    fn is_more_than(&self, other: &Self) -> bool {
+        let deviation = (2.0 / self.freedoms + 2.0 / other.freedoms).sqrt();
+        (self.power / other.power).ln() > NORMAL_97_5 * deviation
+    }
+
+    fn pooled(&self, other: &Self) -> f64 {
         (self.power * self.freedoms + other.power * other.freedoms) / (self.freedoms + other.freedoms)
     }
 }
@@ -117,9 +209,10 @@ fn beside_mean(mut rows: Vec<MotionRow>) -> Vec<MotionRow> {
 #[cfg(test)]
 mod tests {
     use super::super::data::Data;
+    use super::super::fit::Effort;
     use super::super::model::index;
     use super::super::nominal::nominal_fit;
-    use super::super::testing::TestContact;
+    use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
 
     #[test]
@@ -140,5 +233,55 @@ mod tests {
         // Four millimetres of eight: before it the spring's force is all that is left.
         fit.values[index::SURFACE] = 4e-3;
         assert!(!has_free_motion(&trials, &fit));
+    }
+
+    /// What the nominal law leaves of two trials, with the noise that is stated of each row.
+    fn nominal_of(trials: &[ContactTrial]) -> (Fit, Data<'_>, Vec<Vec<f64>>) {
+        let data = Data::new(trials);
+        let first = nominal_fit(&data, &TestContact::nominal());
+        let fit = data.fit(&first.model, &first.values, Effort::FULL);
+        let residual = data.residuals(&fit.model, &fit.values);
+        (fit, data, residual)
+    }
+
+    /// Noise of ten times the stated power, in which five rows say the same, is as loud in contact: no law leaves it. What a spring's bend leaves is
+    /// in contact alone.
+    #[test]
+    fn what_is_as_loud_in_free_motion_is_the_sensors() {
+        let heard = |trials: &[ContactTrial]| {
+            let (fit, data, residual) = nominal_of(trials);
+            power_of_all(trials, &fit, &data.noise, &residual)
+        };
+        let power = heard(&[1, 2].map(|seed| TestContact::PLAIN.remembering(5.0, 3.0 * FORCE_NOISE, seed))).unwrap();
+        // 6000 rows of which ten say the same (1 + 2 sum of exp(-k / 5)): a power is known to sqrt(2 / 600), a seventeenth.
+        assert!((power / 10.0 - 1.0).abs() < 0.2, "{power}");
+        let bent = TestContact { exponent: 1.8, ..TestContact::PLAIN };
+        assert_eq!(heard(&[1, 2].map(|seed| bent.trial(seed))), None);
+        // A zero that wanders over the whole trial tells its power by a few squares: it may be a drift.
+        assert_eq!(heard(&[1, 2].map(|seed| TestContact::PLAIN.remembering(500.0, 3.0 * FORCE_NOISE, seed))), None);
+    }
+
+    #[test]
+    fn a_pull_that_is_the_same_both_ways_is_a_force_of_the_height() {
+        let pulled = |both_ways: bool| {
+            let trials = [1, 2].map(|seed| {
+                let mut recording = TestContact::PLAIN.recording(seed);
+                let before = [&recording.position[..1], &recording.position[..]].concat();
+                let force = recording.force.as_mut().unwrap();
+                for ((force, x), before) in force.iter_mut().zip(&recording.position).zip(before) {
+                    if *x < 0.0 && (both_ways || *x < before) {
+                        *force -= 0.4 / (1.0 - x / 5e-4).powi(2);
+                    }
+                }
+                TestContact::seen(&recording)
+            });
+            let (fit, data, residual) = nominal_of(&trials);
+            left_by_height_and_law(&trials, &fit, &data.noise, &residual).unwrap()
+        };
+        let [by_height, by_law] = pulled(true);
+        assert!(by_height < 0.2 * by_law, "{by_height} {by_law}");
+        // On the way out alone, half of the pull's power is between both ways.
+        let [by_height, by_law] = pulled(false);
+        assert!(by_height > 0.3 * by_law, "{by_height} {by_law}");
     }
 }

@@ -1,9 +1,11 @@
 //! How far the effects that were found stand for the mismatch.
 
 use super::criteria::{
-    LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, MOST_LEFT, NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
+    HEIGHT_PART, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, MOST_LEFT, NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE,
+    VALUES_MATTER,
 };
 use super::fit::Fit;
+use super::free_motion::left_by_height_and_law;
 use super::held_out::{HeldOut, rms};
 use super::rest::Rest;
 use super::search::Search;
@@ -16,6 +18,19 @@ pub(super) fn takes_too_little(search: &Search<'_>, fit: &Fit, named: &[NamedTer
     let all = (search.nominal.energy - expected).max(f64::MIN_POSITIVE);
     let left = (fit.energy - expected).max(0.0);
     !named.is_empty() && Rest::of(&search.data, fit).over_sensors > NOTABLE_POWER && 1.0 - left / all < LEAST_TOLD_SHARE
+}
+
+/// Whether a force that depends on the height alone stands for free motion far better than `fit` with adhesion among its `named` effects, which
+/// leaves something notable there: a magnet or a charge pulls on the way in as on the way out, and adhesion on the way out alone.
+pub(super) fn acts_at_a_distance(search: &Search<'_>, fit: &Fit, named: &[NamedTerm]) -> bool {
+    let is_adhesion = |named: &NamedTerm| fit.model.terms[named.at].name() == "adhesion";
+    if !named.iter().any(is_adhesion) {
+        return false;
+    }
+    let data = &search.data;
+    let residual = data.residuals(&fit.model, &fit.values);
+    let left = left_by_height_and_law(data.trials, fit, &data.noise, &residual);
+    left.is_some_and(|[by_height, by_law]| by_law > NOTABLE_POWER.value() && by_height < HEIGHT_PART * by_law)
 }
 
 /// Whether what `fit` leaves, `rest`, is more than the sensors may leave, by the rows' weights and as it is told, in newtons, and a part
@@ -52,5 +67,47 @@ pub(super) fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given
         Verdict::PartlyExplained
     } else {
         Verdict::Explained
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::circumstances::Circumstances;
+    use super::super::outcome::identify;
+    use super::super::testing::{FORCE_NOISE, TestContact};
+    use super::super::trial::ContactTrial;
+    use crate::diagnose::verdict::Verdict;
+
+    fn judged(trials: &dyn Fn() -> Vec<ContactTrial>) -> (Vec<&'static str>, Verdict, f64) {
+        let outcome =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        (outcome.chosen.model.names(outcome.known_terms), outcome.verdict, outcome.expected_noise)
+    }
+
+    /// A magnet pulls before anything is touched, and adhesion would not.
+    #[test]
+    fn what_pulls_at_a_distance_is_no_adhesion() {
+        let pulled = || {
+            let trials = [1, 2].map(|seed| {
+                let mut recording = TestContact::PLAIN.recording(seed);
+                for (force, x) in recording.force.as_mut().unwrap().iter_mut().zip(&recording.position) {
+                    *force -= 0.4 / (1.0 + (0.0f64.max(-x)) / 8e-4).powi(2);
+                }
+                TestContact::seen(&recording)
+            });
+            trials.to_vec()
+        };
+        let (names, verdict, _) = judged(&pulled);
+        assert_eq!((names, verdict), (vec![], Verdict::Unknown));
+    }
+
+    /// Noise of which five rows say the same, and free motion of a tenth of the time: what is left in contact is as loud as there.
+    #[test]
+    fn noise_that_remembers_is_nothing_unknown() {
+        let trials = || [1, 2].map(|seed| TestContact::PLAIN.remembering(5.0, 3.0 * FORCE_NOISE, seed)).to_vec();
+        let (names, verdict, noise) = judged(&trials);
+        assert_eq!((names, verdict), (vec![], Verdict::Parameters));
+        // The root of one and nine; 20 % is what is asked of an expected noise.
+        assert!((noise / (10.0f64.sqrt() * FORCE_NOISE) - 1.0).abs() < 0.2, "{noise}");
     }
 }

@@ -103,6 +103,7 @@ mod tests {
     fn a_tone_of_the_mains_is_told_however_small_beside_the_force() {
         let stiff = TestContact { stiffness: 3000.0, ..TestContact::PLAIN };
         assert_eq!(names(&stiff, 50.02, 0.35), ["mains_hum"]);
+        assert_eq!(names(&stiff, 49.4, 0.35), ["mains_hum"], "of a network that stands alone");
         assert_eq!(names(&stiff, 50.02, 0.05), Vec::<&str>::new());
         // No line of the mains.
         assert_eq!(names(&stiff, 53.0, 0.35), Vec::<&str>::new());

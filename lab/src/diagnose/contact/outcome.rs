@@ -7,7 +7,7 @@ use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::held_out::{Folds, rms};
 use super::interval::intervals;
-use super::judgement::{is_notable, takes_too_little, verdict};
+use super::judgement::{acts_at_a_distance, is_notable, takes_too_little, verdict};
 use super::learned::{LearnedCurve, learned};
 use super::model::index;
 use super::nominal::{NominalContact, law_of, nominal_fit};
@@ -51,6 +51,8 @@ pub struct Outcome {
     pub residuals: [Vec<Vec<f64>>; 3],
     /// What the sensors alone leave, N or N m in root mean square.
     pub expected_noise: f64,
+    /// Whether most of it is the position's.
+    pub is_limited_by_rounding: bool,
 }
 
 impl Outcome {
@@ -94,6 +96,9 @@ pub fn identify(
     let mut search = Search { data, coarse, nominal, circumstances };
     let chosen = search.run(say);
     say("the contact: what is left");
+    if chosen.fit.model == search.nominal.model {
+        search.data = search.data.heard_in_free_motion(&chosen.fit);
+    }
     let mut outcome = judged(&search, chosen, &start);
     outcome.weights.clone_from(&search.data.weights);
     outcome.noise.clone_from(&search.data.noise);
@@ -107,7 +112,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let given = as_given(search, start);
     let refitted = folds.held_out(data, &search.nominal);
     let (mut fit, mut improved, mut named) = believed(search, &folds, chosen.fit.clone());
-    if takes_too_little(search, &fit, &named) {
+    if takes_too_little(search, &fit, &named) || acts_at_a_distance(search, &fit, &named) {
         // Something is there, and it is not that.
         fit = search.nominal.clone();
         improved = folds.held_out(data, &fit);
@@ -133,6 +138,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         named,
         residuals: [given_residual, refitted.residual, improved.residual],
         expected_noise: data.expected_noise(),
+        is_limited_by_rounding: data.is_limited_by_rounding(),
         chosen: fit,
     }
 }
@@ -183,7 +189,7 @@ mod tests {
             trials: &outcome.trials,
             noise: outcome.noise.clone(),
             weights: outcome.weights.clone(),
-            noise_is_as_stated: true,
+            noise_factor: 1.0,
         };
         let left = rms(&data, &outcome.residuals[2]);
         assert!((left / FORCE_NOISE - 1.0).abs() < 0.05 && (outcome.expected_noise / FORCE_NOISE - 1.0).abs() < 0.05);
@@ -219,8 +225,6 @@ mod tests {
         }
     }
 
-    /// A memory beside a straight spring is found first; from it the search comes to the one that multiplies a bent one, to the noise.
-
     #[test]
     fn at_one_speed_a_loop_stays_beside_a_memory_as_an_alternative() {
         let relaxing = TestContact { branch: 200.0, ..TestContact::PLAIN };
@@ -242,7 +246,29 @@ mod tests {
         assert!((value - 0.4).abs() < 0.01, "{value}");
     }
 
-    /// A bias that takes a six-hundredth of what the force varies by, which 6000 rows tell beyond doubt and nobody would call missing physics.
+    /// A spring whose force saturates as x / (1 + x / length). A layer that gave way all the way down would follow it nearly, and is none.
+    #[test]
+    fn a_spring_that_softens_all_the_way_is_no_layer() {
+        let length = 12e-3;
+        let softened = |seed: u64| {
+            let mut recording = TestContact::PLAIN.recording(seed);
+            let (depths, force) = (&recording.position, recording.force.as_mut().unwrap());
+            for (x, force) in depths.iter().zip(force).filter(|(x, _)| **x > 0.0) {
+                *force += 300.0 * x * (1.0 / (1.0 + x / length) - 1.0);
+            }
+            TestContact::seen(&recording)
+        };
+        let trials = || vec![softened(1), softened(2)];
+        let outcome =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        assert_eq!((names(&outcome), outcome.verdict), (vec!["nonlinear_stiffness"], Verdict::Explained));
+        let (at, ranges) = (outcome.chosen.model.first_value_of(0), &outcome.intervals);
+        let ([low, high], softening) = (ranges[at], outcome.chosen.values[at]);
+        // A 95 % interval, widened by a half: one value of one draw.
+        let slack = 0.5 * (high - low);
+        assert!(low - slack < 1.0 / length && 1.0 / length < high + slack, "{softening} 1/m, {low} to {high}");
+        assert!((softening * length - 1.0).abs() < 0.05, "{softening} 1/m");
+    }
 
     #[test]
     fn what_no_effect_explains_is_unknown() {

@@ -58,7 +58,7 @@ impl Search<'_> {
                 // Two effects can be worth it where neither is alone.
                 None => waiting += 1,
             }
-            let is_at_noise = self.data.noise_is_as_stated && best.energy < AT_NOISE * self.data.expected();
+            let is_at_noise = self.data.noise_factor == 1.0 && best.energy < AT_NOISE * self.data.expected();
             if waiting > 1 || is_at_noise {
                 break;
             }

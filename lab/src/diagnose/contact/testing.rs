@@ -2,7 +2,7 @@
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
-use rand_distr::{Distribution as _, Normal};
+use rand_distr::{Distribution as _, Normal, StandardNormal};
 
 use super::data::Data;
 use super::model::ContactModel;
@@ -86,6 +86,20 @@ impl TestContact {
             position.push(x + position_noise.sample(&mut random));
         }
         Recording { name: format!("trial-{seed}.csv"), time, position, force: Some(force), ..Recording::default() }
+    }
+
+    /// With noise beside the sensor's white one, of deviation `size`, N, and a memory of so many `rows`.
+    pub fn remembering(&self, rows: f64, size: f64, seed: u64) -> ContactTrial {
+        let mut recording = self.recording(seed);
+        let mut random = ChaCha12Rng::seed_from_u64(seed + 1000);
+        let kept = f64::exp(-1.0 / rows);
+        let mut noise = 0.0;
+        for force in recording.force.as_mut().unwrap() {
+            let new: f64 = StandardNormal.sample(&mut random);
+            noise = kept * noise + size * (1.0 - kept * kept).sqrt() * new;
+            *force += noise;
+        }
+        Self::seen(&recording)
     }
 
     /// The same as the model sees it.

@@ -6,6 +6,7 @@ use super::colour::noise_power;
 use super::criteria::LEAST_COLOUR;
 use super::data::Data;
 use super::fit::Fit;
+use super::free_motion::power_of_all;
 use super::variance::{law_variance, noise_along, noise_scale};
 
 impl Data<'_> {
@@ -33,6 +34,38 @@ impl Data<'_> {
         let misfit = law_variance(&rows);
         let weight = |variance: &f64| if variance.is_finite() { (variance + misfit).sqrt().recip() } else { 0.0 };
         let weights = noise.iter().map(|trial| trial.iter().map(weight).collect());
-        Self { trials: self.trials, weights: weights.collect(), noise, noise_is_as_stated: scale == 1.0 }
+        Self { trials: self.trials, weights: weights.collect(), noise, noise_factor: scale }
+    }
+
+    /// The same with the sensors' noise as loud as what `fit` leaves, where that is as loud in free motion.
+    #[must_use]
+    pub fn heard_in_free_motion(mut self, fit: &Fit) -> Self {
+        let residual = self.residuals(&fit.model, &fit.values);
+        let power = power_of_all(self.trials, fit, &self.noise, &residual).unwrap_or(1.0).max(1.0);
+        self.noise.iter_mut().flatten().for_each(|variance| *variance *= power);
+        self.noise_factor *= power;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::Effort;
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::{FORCE_NOISE, TestContact};
+    use super::*;
+
+    /// Rows that are weighed by a sensor's figures, and noise of ten times their power in free motion and in contact.
+    #[test]
+    fn noise_that_is_as_loud_in_free_motion_is_what_the_sensors_leave() {
+        let trials = [1, 2].map(|seed| TestContact::PLAIN.remembering(5.0, 3.0 * FORCE_NOISE, seed));
+        let data = Data::new(&trials);
+        let first = nominal_fit(&data, &TestContact::nominal());
+        let fit = data.fit(&first.model, &first.values, Effort::FULL);
+        let stated = data.expected_noise();
+        let heard = data.heard_in_free_motion(&fit);
+        // A power of ten, known to a seventeenth.
+        assert!((heard.noise_factor / 10.0 - 1.0).abs() < 0.2, "{}", heard.noise_factor);
+        assert!((heard.expected_noise() / stated - heard.noise_factor.sqrt()).abs() < 1e-9);
     }
 }

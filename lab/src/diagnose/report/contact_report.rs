@@ -6,7 +6,7 @@ use super::contact_residual::contact_residual;
 use super::correlation;
 use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
 use super::summary;
-use crate::diagnose::contact::data::{Data, is_limited_by_rounding};
+use crate::diagnose::contact::data::Data;
 use crate::diagnose::contact::held_out::rms;
 use crate::diagnose::contact::learned::LearnedCurve;
 use crate::diagnose::contact::model::index;
@@ -91,12 +91,7 @@ fn residuals(outcome: &Outcome) -> Residuals {
 /// The rows of `outcome` with their worth.
 #[must_use]
 pub fn data(outcome: &Outcome) -> Data<'_> {
-    Data {
-        trials: &outcome.trials,
-        noise: outcome.noise.clone(),
-        weights: outcome.weights.clone(),
-        noise_is_as_stated: true,
-    }
+    Data { trials: &outcome.trials, noise: outcome.noise.clone(), weights: outcome.weights.clone(), noise_factor: 1.0 }
 }
 
 /// The rig `given` with what was found of the contact: refitted values and every effect of the law.
@@ -295,7 +290,7 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
     let mut tell = |code: &'static str, place: &str, text: &str| {
         findings.push(Finding { code, grave: false, place: place.to_owned(), text: text.to_owned() });
     };
-    if is_limited_by_rounding(&outcome.trials, outcome.expected_noise) {
+    if outcome.is_limited_by_rounding {
         tell(
             "quantization_limits_residual",
             "position",
