@@ -117,7 +117,7 @@ fn tails(
         (rows.iter().filter(|row| is(row)).count() as u64, rows.len() as u64)
     };
     let ((hits, n), (before, all)) = (count(run), count(published));
-    assert!(n > 2 && all >= 20, "{n} and {all} cases show nothing");
+    assert!(n > 2 && all > 20, "{n} and {all} cases show nothing");
     // Laplace's rule: what was always so among few is not always so.
     let share = (before as f64 + 1.0) / (all as f64 + 2.0);
     let binomial = Binomial::new(share, n).unwrap();
@@ -130,16 +130,15 @@ fn half_right_is_not_what_is_published() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let published: ChallengeScore = serde_json::from_value(json(&project.join("results/challenge.json"))).unwrap();
     let large: Vec<&CaseScore> = published.rows.iter().filter(|row| row.is_large()).collect();
-    let half = large.len() / 2;
     let right: Vec<CaseScore> = large.into_iter().filter(|row| row.is_right()).cloned().collect();
     let wrong = right.iter().cloned().map(|mut row| {
         row.answer.named.clear();
         row
     });
     let mut run = published.clone();
-    run.rows = right.iter().take(half).cloned().chain(wrong.take(half)).collect();
+    run.rows = right.iter().take(8).cloned().chain(wrong.take(8)).collect();
     let [at_most, _] = tails(&published, &run, CaseScore::is_large, CaseScore::is_right);
-    assert!(at_most < IMPROBABLE, "{half} of {} pass: {at_most}", 2 * half);
+    assert!(at_most < IMPROBABLE, "eight of sixteen pass: {at_most}");
 }
 
 /// The text of a score with every measured time zero: nothing else may differ between two runs.
