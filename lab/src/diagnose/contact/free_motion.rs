@@ -135,7 +135,7 @@ fn told_of(
     Some(Told { power: squares / rows as f64, freedoms: rows as f64 / memory })
 }
 
-/// Power of the sensor's noise, over what is stated, by free motion and contact together, where what `fit` leaves in contact is no more than what
+/// Power of the sensor's noise in contact, over what is stated, by free motion and contact together, where what `fit` leaves in contact is no more than what
 /// is left in free motion, in which nothing is touched: no law of the contact leaves it. `None` where it is more, or where free motion has not as
 /// many independent squares as [`LEAST_STRETCHES`] to tell its power by.
 #[must_use]
@@ -145,7 +145,7 @@ pub fn power_of_all(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], resi
     }
     let free = told_of(trials, fit, noise, residual, Place::Free)?;
     let in_contact = told_of(trials, fit, noise, residual, Place::InContact)?;
-    (free.freedoms >= LEAST_STRETCHES.value() && !in_contact.is_more_than(&free)).then(|| in_contact.pooled(&free))
+    (free.freedoms >= LEAST_STRETCHES.value() && !in_contact.is_more_than(&free)).then(|| in_contact.with(&free))
 }
 
 /// A power, and how many independent squares tell it.

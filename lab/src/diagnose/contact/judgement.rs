@@ -101,7 +101,7 @@ mod tests {
         assert_eq!((names, verdict), (vec![], Verdict::Unknown));
     }
 
-    /// Noise of which five rows say the same, and free motion of a tenth of the time: what is left in contact is as loud as there.
+    /// Noise that remembers for five rows, and free motion of a third of the time: what is left in contact is as loud as there.
     #[test]
     fn noise_that_remembers_is_nothing_unknown() {
         let trials = || [1, 2].map(|seed| TestContact::PLAIN.remembering(5.0, 3.0 * FORCE_NOISE, seed)).to_vec();
