@@ -35,6 +35,8 @@ fn failures(challenge: &ChallengeScore) -> String {
         (all.iter().filter(|row| wrong(row)).count(), all.len())
     };
     let small = count(&|row| !row.is_right(), &|row| row.kind == CaseKind::Single && row.strength < SMALL);
+    let large = count(&|row| !row.is_right(), &|row| row.is_large());
+    let alarms = (challenge.none.false_alarms, challenge.none.n);
     let values: Vec<_> = challenge.rows.iter().flat_map(|row| &row.values).collect();
     let missed = values.iter().filter(|value| !value.covered).count();
     let of = |(wrong, all): (usize, usize)| format!("{wrong} of {all}");
@@ -42,7 +44,8 @@ fn failures(challenge: &ChallengeScore) -> String {
     let mut rows = vec![
         ("other authors' cases: one effect, not named rightly", of(single)),
         ("the same: two effects", of(pairs)),
-        ("the same: nothing missing, something named or `unknown`", of(none)),
+        ("ours of strength 1 or more: one effect, not named rightly", of(large)),
+        ("nothing missing: something named or `unknown`", format!("others {}; ours {}", of(none), of(alarms))),
         ("outside the list: not reported as unknown", format!("others {}; ours {}", of(outside), of(ours))),
         ("parameter interval misses the truth", format!("{} (5 % nominal)", of((missed, values.len())))),
         ("effect below half of the noise: not named", of(small)),
