@@ -30,6 +30,7 @@ pub use excitation_stats::{ExcitationStats, FrequencySearch, Start, ToneWeight, 
 pub use first_order_lag::lagged;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
+pub use sensor::mains_hum::MAINS_TOLERANCE;
 
 /// The internal state of an effect with state, from one sample to the next; all zero at the start of a trial. Each effect says what
 /// its entries mean.

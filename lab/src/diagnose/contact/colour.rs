@@ -215,13 +215,8 @@ mod tests {
         let power = power_behind(&trials);
         assert!((7.0..12.0).contains(&power), "{power}");
         // A neck that pulls near the surface, and the bend of a spring, are no noise: white noise stays what it is.
-        let mut pulled = [1, 2].map(|seed| TestContact::PLAIN.recording(seed));
-        for recording in &mut pulled {
-            for (force, position) in recording.force.as_mut().unwrap().iter_mut().zip(&recording.position) {
-                *force -= if *position < 0.0 { 10.0 * FORCE_NOISE * (1.0 + position / 5e-4).max(0.0) } else { 0.0 };
-            }
-        }
-        let power = power_behind(&pulled.each_ref().map(TestContact::seen));
+        let neck = |x: f64| if x < 0.0 { -10.0 * FORCE_NOISE * (1.0 + x / 5e-4).max(0.0) } else { 0.0 };
+        let power = power_behind(&[1, 2].map(|seed| TestContact::PLAIN.trial_with(seed, neck)));
         assert!((1.0..1.3).contains(&power), "{power}");
     }
 

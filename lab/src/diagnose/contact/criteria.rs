@@ -1,6 +1,7 @@
 //! When a law counts as told by the recordings. Each number with its meaning and origin.
 
 use crate::diagnose::threshold::thresholds;
+use crate::effects::MAINS_TOLERANCE;
 
 thresholds! { "contact";
     /// Log likelihood that a larger model has to gain, nats: one in e^10 by chance for one comparison, e^5 for all [`COMPARISONS`].
@@ -87,7 +88,6 @@ thresholds! { "contact";
     HEIGHT_PART = 0.5, "1", chosen;
     /// Share of a wave's variance that place and direction of the tool have from which the wave is not told from a law of the motion: half.
     LARGEST_SHARE_IN_STEP = 0.5, "1", derived;
-    /// Part by which a line of the spectrum may be off the frequency that it is known by: what EN 50160 allows the mains of a network that
-    /// stands alone, for 95 % of a week. A recorder's own clock is better.
-    LINE_TOLERANCE = 0.02, "1", cited;
+    /// Part by which a line of the spectrum may be off the frequency that it is known by: that of the mains.
+    LINE_TOLERANCE = MAINS_TOLERANCE, "1", cited;
 }

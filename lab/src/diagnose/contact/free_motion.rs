@@ -35,6 +35,27 @@ pub fn has_free_motion(trials: &[ContactTrial], fit: &Fit) -> bool {
     rows as f64 >= LEAST_PART_OF_COEFFICIENTS * all as f64
 }
 
+/// Where a row lies.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    Free,
+    InContact,
+}
+
+/// Trial and row of each row there that measures the law, in their order.
+fn rows_at(place: Place, trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>]) -> Vec<(usize, usize)> {
+    let is_free = |number: usize, row: usize| trials[number].position[row] <= fit.model.surface(&fit.values, number);
+    (0..trials.len())
+        .flat_map(|number| (0..trials[number].len()).map(move |row| (number, row)))
+        .filter(|&(number, row)| noise[number][row].is_finite() && is_free(number, row) == (place == Place::Free))
+        .collect()
+}
+
+/// `rows` in pieces whose rows follow each other.
+fn runs_of(rows: &[(usize, usize)]) -> impl Iterator<Item = &[(usize, usize)]> {
+    rows.chunk_by(|before, after| before.0 == after.0 && before.1 + 1 == after.1)
+}
+
 /// What a force of the height alone, the same on the way in as on the way out, leaves of the force in free motion, and what `residual`, of a law,
 /// leaves there: mean squares over what is stated. `None` where it is too short.
 #[must_use]
@@ -44,21 +65,17 @@ pub fn left_by_height_and_law(
     noise: &[Vec<f64>],
     residual: &[Vec<f64>],
 ) -> Option<[f64; 2]> {
-    let (mut heights, mut forces, mut left) = (Vec::new(), Vec::new(), 0.0);
-    for (number, trial) in trials.iter().enumerate() {
-        let surface = fit.model.surface(&fit.values, number);
-        for row in (0..trial.len()).filter(|row| trial.position[*row] <= surface && noise[number][*row].is_finite()) {
-            let deviation = noise[number][row].sqrt();
-            heights.push(surface - trial.position[row]);
-            forces.push(trial.force[row] / deviation);
-            left += (residual[number][row] / deviation).powi(2);
-        }
-    }
-    let rows = forces.len() as f64;
-    let mean = forces.iter().sum::<f64>() / rows.max(1.0);
+    let rows = rows_at(Place::Free, trials, fit, noise);
+    let deviation = |&(number, row): &(usize, usize)| noise[number][row].sqrt();
+    let positions =
+        rows.iter().map(|&(number, row)| trials[number].position[row] - fit.model.surface(&fit.values, number));
+    let forces: Vec<f64> = rows.iter().map(|at| trials[at.0].force[at.1] / deviation(at)).collect();
+    let left: Vec<f64> = rows.iter().map(|at| residual[at.0][at.1] / deviation(at)).collect();
+    let count = rows.len() as f64;
+    let mean = forces.iter().sum::<f64>() / count.max(1.0);
     let squares: f64 = forces.iter().map(|force| (force - mean).powi(2)).sum();
-    let by_height = squares * (1.0 - correlation_ratio(&heights, &forces));
-    (forces.len() >= LEAST_ROWS && !fit.model.bilateral).then(|| [by_height / rows, left / rows])
+    let by_height = squares * (1.0 - correlation_ratio(&positions.collect::<Vec<_>>(), &forces));
+    (rows.len() >= LEAST_ROWS && !fit.model.bilateral).then(|| [by_height / count, energy(&left) / count])
 }
 
 /// Mean square in free motion over what is stated, of what is left beside the mean of each of [`LEAST_STRETCHES`] stretches or more, and beside
@@ -67,19 +84,16 @@ pub fn left_by_height_and_law(
 #[must_use]
 pub fn free_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residual: &[Vec<f64>]) -> f64 {
     let height = |number: usize, row: usize| fit.model.surface(&fit.values, number) - trials[number].position[row];
-    let rows: Vec<(usize, usize)> = (0..trials.len())
-        .flat_map(|number| (0..trials[number].len()).map(move |row| (number, row)))
-        .filter(|&(number, row)| height(number, row) >= 0.0 && noise[number][row].is_finite())
-        .collect();
+    let rows = rows_at(Place::Free, trials, fit, noise);
     let usual = median(rows.iter().map(|(number, row)| height(*number, *row))).unwrap_or(0.0);
-    let runs = rows.chunk_by(|before, after| before.0 == after.0 && before.1 + 1 == after.1);
     let longest = (rows.len() / LEAST_STRETCHES.value() as usize).max(SHORTEST_STRETCH);
     let moved = |&(number, row): &(usize, usize)| {
         let trial = &trials[number];
         let left = residual[number][row] / noise[number][row].sqrt();
         MotionRow { left, motion: [trial.position[row], trial.velocity[row], trial.acceleration[row]] }
     };
-    let stretches = runs.flat_map(|run| run.chunks(longest)).filter(|stretch| stretch.len() >= SHORTEST_STRETCH);
+    let stretches =
+        runs_of(&rows).flat_map(|run| run.chunks(longest)).filter(|stretch| stretch.len() >= SHORTEST_STRETCH);
     let is_far = |stretch: &&[(usize, usize)]| stretch.iter().all(|(number, row)| height(*number, *row) > usual);
     let (far, near): (Vec<_>, Vec<_>) = stretches.partition(is_far);
     let power = |side: Vec<&[(usize, usize)]>| {
@@ -91,13 +105,6 @@ pub fn free_power(trials: &[ContactTrial], fit: &Fit, noise: &[Vec<f64>], residu
     }
 }
 
-/// Where a row lies.
-#[derive(Clone, Copy, PartialEq)]
-enum Place {
-    Free,
-    InContact,
-}
-
 /// Power of what is left in free motion, beside each trial's mean there, or in contact, over what is stated, and how many squares tell it;
 /// `None` where they are too few.
 fn told_of(
@@ -107,32 +114,25 @@ fn told_of(
     residual: &[Vec<f64>],
     place: Place,
 ) -> Option<Told> {
-    let mut runs: Vec<Vec<f64>> = Vec::new();
-    for (number, trial) in trials.iter().enumerate() {
-        let surface = fit.model.surface(&fit.values, number);
-        let rows: Vec<usize> = (0..trial.len())
-            .filter(|row| {
-                noise[number][*row].is_finite() && (trial.position[*row] <= surface) == (place == Place::Free)
-            })
-            .collect();
-        let left = |row: &usize| residual[number][*row] / noise[number][*row].sqrt();
-        let mean = match place {
-            Place::Free => rows.iter().map(left).sum::<f64>() / rows.len().max(1) as f64,
-            Place::InContact => 0.0,
-        };
-        let together = rows.chunk_by(|before, after| before + 1 == *after);
-        runs.extend(together.map(|run| run.iter().map(|row| left(row) - mean).collect::<Vec<_>>()));
-    }
-    let rows: usize = runs.iter().map(Vec::len).sum();
-    if rows < LEAST_ROWS {
+    let rows = rows_at(place, trials, fit, noise);
+    if rows.len() < LEAST_ROWS {
         return None;
     }
+    let left = |&(number, row): &(usize, usize)| residual[number][row] / noise[number][row].sqrt();
+    let mean = |number: usize| {
+        let (count, sum) =
+            rows.iter().filter(|at| at.0 == number).fold((0.0, 0.0), |(count, sum), at| (count + 1.0, sum + left(at)));
+        if place == Place::Free && count > 0.0 { sum / count } else { 0.0 }
+    };
+    let means: Vec<f64> = (0..trials.len()).map(mean).collect();
+    let runs: Vec<Vec<f64>> = runs_of(&rows).map(|run| run.iter().map(|at| left(at) - means[at.0]).collect()).collect();
+    let rows = rows.len() as f64;
     let squares: f64 = runs.iter().map(|run| energy(run)).sum();
     // What wanders for longer than a run is one error of all of its rows (B. R. Moulton, *Rev. Econ. Stat.* 72, 1990).
     let of_runs: f64 =
         runs.iter().map(|run| run.iter().sum::<f64>().powi(2)).sum::<f64>() / squares.max(f64::MIN_POSITIVE);
     let memory = integrated_autocorrelation(&runs.iter().map(Vec::as_slice).collect::<Vec<_>>()).max(of_runs);
-    Some(Told { power: squares / rows as f64, freedoms: rows as f64 / memory })
+    Some(Told { power: squares / rows, freedoms: rows / memory })
 }
 
 /// Power of the sensor's noise in contact, over what is stated, by free motion and contact together, where what `fit` leaves in contact is no more than what

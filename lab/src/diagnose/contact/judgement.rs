@@ -87,27 +87,20 @@ mod tests {
     /// A magnet pulls before anything is touched, and adhesion would not.
     #[test]
     fn what_pulls_at_a_distance_is_no_adhesion() {
-        let pulled = || {
-            let trials = [1, 2].map(|seed| {
-                let mut recording = TestContact::PLAIN.recording(seed);
-                for (force, x) in recording.force.as_mut().unwrap().iter_mut().zip(&recording.position) {
-                    *force -= 0.4 / (1.0 + (0.0f64.max(-x)) / 8e-4).powi(2);
-                }
-                TestContact::seen(&recording)
-            });
-            trials.to_vec()
-        };
+        let pull = |x: f64| -0.4 / (1.0 + (-x).max(0.0) / 8e-4).powi(2);
+        let pulled = || [1, 2].map(|seed| TestContact::PLAIN.trial_with(seed, pull)).to_vec();
         let (names, verdict, _) = judged(&pulled);
         assert_eq!((names, verdict), (vec![], Verdict::Unknown));
     }
 
-    /// Noise that remembers for five rows, and free motion of a third of the time: what is left in contact is as loud as there.
+    /// Noise that remembers for six rows, in free motion whose pieces are too short for the wavelets of that memory: by these alone the noise is a
+    /// third too small, and what is left is called unknown.
     #[test]
     fn noise_that_remembers_is_nothing_unknown() {
-        let trials = || [1, 2].map(|seed| TestContact::PLAIN.remembering(5.0, 3.0 * FORCE_NOISE, seed)).to_vec();
+        let trials = || [3, 4].map(|seed| TestContact::PLAIN.remembering(6.0, 3.0 * FORCE_NOISE, seed)).to_vec();
         let (names, verdict, noise) = judged(&trials);
         assert_eq!((names, verdict), (vec![], Verdict::Parameters));
-        // The root of one and nine; 20 % is what is asked of an expected noise.
-        assert!((noise / (10.0f64.sqrt() * FORCE_NOISE) - 1.0).abs() < 0.2, "{noise}");
+        // The root of one and nine, of some 500 independent squares: 3 %. A tenth is three of these.
+        assert!((noise / (10.0f64.sqrt() * FORCE_NOISE) - 1.0).abs() < 0.1, "{noise}");
     }
 }

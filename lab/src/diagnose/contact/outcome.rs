@@ -96,6 +96,7 @@ pub fn identify(
     let mut search = Search { data, coarse, nominal, circumstances };
     let chosen = search.run(say);
     say("the contact: what is left");
+    // Beside an effect the tool's free motion may hold what that effect does not say, as interference under an atomic force microscope.
     if chosen.fit.model == search.nominal.model {
         search.data = search.data.heard_in_free_motion(&chosen.fit);
     }
@@ -250,15 +251,8 @@ mod tests {
     #[test]
     fn a_spring_that_softens_all_the_way_is_no_layer() {
         let length = 12e-3;
-        let softened = |seed: u64| {
-            let mut recording = TestContact::PLAIN.recording(seed);
-            let (depths, force) = (&recording.position, recording.force.as_mut().unwrap());
-            for (x, force) in depths.iter().zip(force).filter(|(x, _)| **x > 0.0) {
-                *force += 300.0 * x * (1.0 / (1.0 + x / length) - 1.0);
-            }
-            TestContact::seen(&recording)
-        };
-        let trials = || vec![softened(1), softened(2)];
+        let more = |x: f64| 300.0 * x.max(0.0) * (1.0 / (1.0 + x.max(0.0) / length) - 1.0);
+        let trials = || [1, 2].map(|seed| TestContact::PLAIN.trial_with(seed, more)).to_vec();
         let outcome =
             identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
         assert_eq!((names(&outcome), outcome.verdict), (vec!["nonlinear_stiffness"], Verdict::Explained));
@@ -272,15 +266,8 @@ mod tests {
 
     #[test]
     fn what_no_effect_explains_is_unknown() {
-        let rippled = |seed: u64| {
-            let mut recording = TestContact::PLAIN.recording(seed);
-            let (depths, force) = (&recording.position, recording.force.as_mut().unwrap());
-            for (x, force) in depths.iter().zip(force).filter(|(x, _)| **x > 0.0) {
-                *force += 0.16 * (std::f64::consts::TAU * x / 2.5e-3).sin();
-            }
-            TestContact::seen(&recording)
-        };
-        let trials = || vec![rippled(1), rippled(2)];
+        let ripple = |x: f64| if x > 0.0 { 0.16 * (std::f64::consts::TAU * x / 2.5e-3).sin() } else { 0.0 };
+        let trials = || [1, 2].map(|seed| TestContact::PLAIN.trial_with(seed, ripple)).to_vec();
         let outcome =
             identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
         assert_eq!((names(&outcome), outcome.verdict), (vec![], Verdict::Unknown));

@@ -88,6 +88,14 @@ impl TestContact {
         Recording { name: format!("trial-{seed}.csv"), time, position, force: Some(force), ..Recording::default() }
     }
 
+    /// With `more` force by the position, N.
+    pub fn trial_with(&self, seed: u64, more: impl Fn(f64) -> f64) -> ContactTrial {
+        let mut recording = self.recording(seed);
+        let positions = &recording.position;
+        recording.force.iter_mut().flatten().zip(positions).for_each(|(force, x)| *force += more(*x));
+        Self::seen(&recording)
+    }
+
     /// With noise beside the sensor's white one, of deviation `size`, N, and a memory of so many `rows`.
     pub fn remembering(&self, rows: f64, size: f64, seed: u64) -> ContactTrial {
         let mut recording = self.recording(seed);

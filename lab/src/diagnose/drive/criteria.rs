@@ -100,7 +100,7 @@ thresholds! { "drive";
     /// Least share of the inertia that a load beyond a link can have.
     LEAST_LOAD_SHARE = 0.2, "1", chosen;
     /// Deviation about a half to which that share is known beforehand where the load alone is seen: nine of ten lie between a sixth and five
-    /// sixths. Its stiffness goes with the product of both shares, which is within a tenth of a quarter from 0.34 to 0.66.
+    /// sixths. Its stiffness goes with the product of both shares, which is within a tenth of a quarter from 0.35 to 0.65.
     LOAD_SHARE_DEVIATION = 0.2, "1", chosen;
     /// Greatest share of it.
     MOST_LOAD_SHARE = 0.97, "1", chosen;

@@ -13,8 +13,8 @@ pub struct MainsHum;
 /// Frequencies of mains, Hz.
 const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 
-/// Part by which they may be off: EN 50160, networks that stand alone.
-const MAINS_TOLERANCE: f64 = 0.02;
+/// Part by which they may be off: what EN 50160 allows a network that stands alone, for 95 % of a week. A recorder's own clock is better.
+pub const MAINS_TOLERANCE: f64 = 0.02;
 
 /// Frequencies that are tried on either side of each: those of a minute.
 const MOST_TRIED: f64 = 240.0;
