@@ -9,7 +9,6 @@ use palpate_cases::{CaseRequest, EffectSelection, draw};
 use palpate_lab::challenge::case_score::CaseScore;
 use palpate_lab::challenge::challenge_score::ChallengeScore;
 use palpate_lab::challenge::page;
-use palpate_lab::challenge::recordings;
 use palpate_lab::challenge::scored_case::ScoredCase as _;
 use palpate_lab::challenge::summary;
 use serde_json::Value;
@@ -248,7 +247,7 @@ fn cases_of_another_author_are_scored_above_our_own() {
     let own = ChallengeScore { cases: 1, ..score };
     let table = summary::table(&own);
     assert!(table.find("| `elsewhere` |").unwrap() < table.find("| concealed |").unwrap(), "{table}");
-    // What fails of them comes before: of one case each, nothing or all.
+    // What fails of them is what the README says, of one case each nothing or all, and of which run.
     let readme = summary::readme(&own);
     for row in [
         format!("| other authors' cases: one effect, not named rightly | {} of 1 |", 1 - right),
@@ -258,7 +257,7 @@ fn cases_of_another_author_are_scored_above_our_own() {
         ),
         "| outside the list: not reported as unknown | others 0 of 0; ours 0 of 0 |".to_owned(),
     ] {
-        assert!(readme.find(&row).unwrap() < readme.find("| `elsewhere` |").unwrap(), "{readme}");
+        assert!(readme.find(&row).unwrap() < readme.find(&own.sealed_sha256).unwrap(), "{readme}");
     }
     // And the page speaks of them in its heading.
     let mut page = Vec::new();
@@ -320,33 +319,24 @@ fn no_case_is_a_fault_of_the_command_line() {
 }
 
 #[test]
-fn the_page_of_the_diagnosis_shows_the_run_of_its_aims() {
+fn the_page_of_what_was_measured_shows_the_run_of_its_aims() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let run: ChallengeScore = serde_json::from_value(json(&project.join("results/aims.json"))).unwrap();
-    let page = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
+    let page = fs::read_to_string(project.join("docs/measured.md")).unwrap();
     assert!(page.contains(summary::table(&run).trim()), "the table is of another run");
 }
 
 #[test]
-fn the_readme_shows_the_published_score() {
+fn readme_and_documentation_show_the_published_score() {
     let project = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let published = json(&project.join("results/challenge.json"));
     let challenge: ChallengeScore = serde_json::from_value(published).unwrap();
-    let readme = fs::read_to_string(project.join("README.md")).unwrap();
-    assert_eq!(
-        summary::replaced(&readme, &summary::readme(&challenge)).as_deref(),
-        Some(readme.as_str()),
-        "made by hand?"
-    );
+    for (name, part) in
+        [("README.md", summary::readme(&challenge)), ("docs/measured.md", summary::documented(&challenge))]
+    {
+        let text = fs::read_to_string(project.join(name)).unwrap();
+        assert_eq!(summary::replaced(&text, &part).as_deref(), Some(text.as_str()), "{name}: made by hand?");
+    }
     let page = fs::read_to_string(project.join("results/challenge.html")).unwrap();
     assert!(page.contains(&challenge.sealed_sha256), "the page is of another run");
-    // A run that was published before there were real recordings in it has none, and is read all the same.
-    if let Some(real) = &challenge.recorded {
-        let diagnosis = fs::read_to_string(project.join("docs/diagnosis.md")).unwrap();
-        assert_eq!(
-            summary::replaced(&diagnosis, &recordings::table::section(real)).as_deref(),
-            Some(diagnosis.as_str()),
-            "made by hand?"
-        );
-    }
 }

@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::case_source::CaseSource;
 use super::challenge_score::ChallengeScore;
-use super::recordings::table::{section, table};
+use super::recordings::table::table;
 use super::{page, protocol, summary};
 use crate::error::{InputError, UsageError};
 use crate::outfile::OutFile;
@@ -51,8 +51,8 @@ pub struct ChallengeArgs {
     /// Run nothing: redraw page and tables of a score that was written by --json
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cases", "seed", "source", "recordings", "baselines", "minutes", "out"])]
     pub from: Option<PathBuf>,
-    /// Put the score into results/challenge.json of this project, its page beside it, its table into the README, that of
-    /// the real recordings into docs/diagnosis.md
+    /// Put the score into results/challenge.json of this project, its page beside it, what fails into the README, all counts
+    /// into docs/measured.md
     #[arg(long)]
     pub publish: bool,
 }
@@ -130,14 +130,12 @@ fn publish(challenge: &ChallengeScore, text: &str) -> Result<()> {
     let results = project.join("results");
     let mut page = Vec::new();
     page::write(challenge, &mut page).context("the page cannot be written")?;
-    let mut files = vec![
+    let files = [
         filled(project.join("README.md"), &summary::readme(challenge))?,
+        filled(project.join("docs/measured.md"), &summary::documented(challenge))?,
         (results.join("challenge.json"), text.as_bytes().to_vec()),
         (results.join("challenge.html"), page),
     ];
-    if let Some(recorded) = &challenge.recorded {
-        files.push(filled(project.join("docs/diagnosis.md"), &section(recorded))?);
-    }
     files.into_iter().try_for_each(|(path, bytes)| commit(OutFile::create(&path)?, &bytes))
 }
 

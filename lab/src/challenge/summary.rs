@@ -5,6 +5,7 @@ use palpate_cases::truth::CaseKind;
 use super::binomial::clopper_pearson;
 use super::case_score::CaseScore;
 use super::challenge_score::ChallengeScore;
+use super::recordings;
 use super::recordings::table::line;
 use super::scored_case::ScoredCase as _;
 use super::targets::{Target, counts_of, statistics, targets};
@@ -14,10 +15,18 @@ pub const BEGIN: &str = "<!-- written by `palpate challenge --publish`; not by h
 /// What ends it.
 pub const END: &str = "<!-- end of what `palpate challenge` writes -->";
 
-/// What the README shows: what fails, then the table.
+/// What the README shows: what fails, and of which run.
 #[must_use]
 pub fn readme(challenge: &ChallengeScore) -> String {
-    format!("{}\n{}", failures(challenge), table(challenge))
+    format!("{}\n{}", failures(challenge), run(challenge))
+}
+
+/// What the documentation shows: every count, and every real recording.
+#[must_use]
+pub fn documented(challenge: &ChallengeScore) -> String {
+    let recorded =
+        challenge.recorded.as_ref().map_or(String::new(), |real| format!("\n{}", recordings::table::table(real)));
+    table(challenge) + &recorded
 }
 
 /// Strength of an effect below which no recording shows it for sure: half of the noise.
@@ -61,10 +70,7 @@ fn failures(challenge: &ChallengeScore) -> String {
 /// The table, and what it was made of.
 #[must_use]
 pub fn table(challenge: &ChallengeScore) -> String {
-    let mut text = format!(
-        "Seed {}, {} cases, answers committed to by SHA-256 `{}` before the first diagnosis.\n\n",
-        challenge.seed, challenge.cases, challenge.sealed_sha256
-    );
+    let mut text = run(challenge) + "\n";
     if challenge.cases > 0 || !challenge.sources.is_empty() {
         text += &drawn(challenge);
     }
@@ -73,6 +79,14 @@ pub fn table(challenge: &ChallengeScore) -> String {
     }
     challenge.left_out.iter().for_each(|what| text += &format!("\nLeft out: {what}\n"));
     text
+}
+
+/// Which run it was, and what its answers were committed to by.
+fn run(challenge: &ChallengeScore) -> String {
+    format!(
+        "Seed {}, {} cases, answers committed to by SHA-256 `{}` before the first diagnosis.\n",
+        challenge.seed, challenge.cases, challenge.sealed_sha256
+    )
 }
 
 /// The cases of other authors, a line for each, then the drawn ones, a line for each kind, and the statistics that are no shares.

@@ -37,12 +37,6 @@ pub fn line(recorded: &RecordingScores) -> String {
     text
 }
 
-/// The line and the table, for a page of the documentation.
-#[must_use]
-pub fn section(recorded: &RecordingScores) -> String {
-    format!("{}\n\n{}", line(recorded), table(recorded))
-}
-
 /// A row each.
 #[must_use]
 pub fn table(recorded: &RecordingScores) -> String {
