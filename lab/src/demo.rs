@@ -114,6 +114,7 @@ fn explained(rig: &Path, trials: &[PathBuf], out: &Path) -> Result<PathBuf> {
     let page = out.join("diagnosis.html");
     diagnose::run(&DiagnoseArgs {
         vary: None,
+        margins: None,
         rig: rig.to_path_buf(),
         trials: trials.to_vec(),
         simulation: Vec::new(),

@@ -5,6 +5,7 @@
 //! what is left. [`report`] writes it down; [`experiment`] says which experiment would separate alternatives.
 
 pub mod acting_force;
+pub mod bound;
 pub mod channels;
 pub mod check;
 pub mod command;
@@ -25,6 +26,7 @@ pub mod signals;
 pub mod so_far;
 pub mod term;
 pub mod threshold;
+pub mod threshold_margin;
 pub mod thresholds;
 pub mod tool_position;
 pub mod verdict;

@@ -16,10 +16,14 @@ use serde::{Deserialize, Serialize};
 use crate::challenge::case_list::sample;
 use crate::challenge::run_diagnosis::run_command;
 use crate::diagnose::threshold::Threshold;
+use crate::diagnose::threshold_margin::ThresholdMargin;
 use crate::diagnose::thresholds;
 use crate::error::UsageError;
 use crate::experiment_design::explanation::UNKNOWN;
 use crate::own_program;
+
+/// Beside a case: between which factors each threshold changes nothing in it.
+const MARGINS: &str = "margins.json";
 
 /// What each threshold is multiplied by.
 const FACTORS: [f64; 2] = [0.7, 1.3];
@@ -58,13 +62,14 @@ pub struct Answer {
     pub verdict: String,
     /// Names, sorted.
     pub named: BTreeSet<String>,
+    /// Whether it was asked; an answer is known without where no comparison with the threshold would come out otherwise.
+    pub was_asked: bool,
 }
 
 /// A case in its folder.
 struct SweptCase {
     name: String,
     truth: BTreeSet<String>,
-    has_effort: bool,
     trials: Vec<String>,
 }
 
@@ -82,18 +87,17 @@ pub fn run(args: &SweepThresholdsArgs) -> Result<()> {
     let cases = draw_cases(args, folder)?;
     let mut answers = Answers::open(folder)?;
     let begun = Instant::now();
-    let settings =
-        chosen.iter().flat_map(|threshold| FACTORS.map(|factor| (threshold.name, setting(threshold, factor))));
-    for (name, setting) in std::iter::once(("", String::new())).chain(settings) {
-        // What the drive's channel decides by is not looked at without an effort.
-        for case in cases.iter().filter(|case| case.has_effort || !name.starts_with("drive.")) {
+    let settings = chosen.iter().flat_map(|threshold| FACTORS.map(|factor| Some((threshold, factor))));
+    for varied in std::iter::once(None).chain(settings) {
+        for case in &cases {
             if args.minutes.is_some_and(|most| begun.elapsed().as_secs() > 60 * most) {
                 eprintln!("note: not all was run; the same command goes on from here");
                 return report(folder, &chosen, &cases, &answers);
             }
-            answers.ask(folder, &setting, case)?;
+            answers.ask(folder, varied, case)?;
         }
-        if !setting.is_empty() {
+        if let Some((threshold, factor)) = varied {
+            let setting = setting(threshold, factor);
             eprintln!("{setting}: {} of {} answers changed", answers.changed(&setting), answers.of(&setting).len());
         }
     }
@@ -134,9 +138,8 @@ impl SweptCase {
             CaseKind::Outside => BTreeSet::from([UNKNOWN.to_owned()]),
             _ => case.truth.effects.iter().map(|effect| effect.name.to_owned()).collect(),
         };
-        let has_effort = case.truth.channels.iter().any(|channel| channel.starts_with("effort"));
         let trials = (1..=case.trials.len()).map(|number| format!("trial-{number}.csv")).collect();
-        Self { name: String::new(), truth, has_effort, trials }
+        Self { name: String::new(), truth, trials }
     }
 }
 
@@ -157,23 +160,20 @@ impl Answers {
         Ok(Self { file, given })
     }
 
-    /// Diagnoses `case` under `setting`, unless it was.
-    fn ask(&mut self, folder: &Path, setting: &str, case: &SweptCase) -> Result<()> {
+    /// The answer to `case` with `threshold` times `factor`, or with none varied: asked, unless it was or is known by the margins.
+    fn ask(&mut self, folder: &Path, varied: Option<(&Threshold, f64)>, case: &SweptCase) -> Result<()> {
+        let setting = varied.map_or_else(String::new, |(threshold, factor)| setting(threshold, factor));
         if self.given.iter().any(|answer| answer.setting == setting && answer.case == case.name) {
             return Ok(());
         }
         let place = folder.join(&case.name);
-        let mut command = own_program::find()?.command();
-        command.args(["diagnose", "--rig", "rig.toml", "--json", "diagnosis.json"]).args(&case.trials);
-        if !setting.is_empty() {
-            command.args(["--vary", setting]);
-        }
-        let (diagnosis, _) = run_command(command.current_dir(&place), &place.join("diagnosis.json"))?;
-        let (verdict, named) = match diagnosis {
-            Ok(found) => (found.verdict.clone(), found.physics.into_iter().map(|physics| physics.name).collect()),
-            Err(error) => (error, BTreeSet::new()),
+        let known =
+            varied.filter(|(threshold, factor)| margin(&place, threshold).is_some_and(|one| one.holds(*factor)));
+        let plain = self.given.iter().find(|answer| answer.setting.is_empty() && answer.case == case.name);
+        let answer = match (known, plain) {
+            (Some(_), Some(plain)) => Answer { setting, was_asked: false, ..plain.clone() },
+            _ => asked(&place, setting, case)?,
         };
-        let answer = Answer { setting: setting.to_owned(), case: case.name.clone(), verdict, named };
         writeln!(self.file, "{}", serde_json::to_string(&answer)?).context("cannot note an answer")?;
         self.given.push(answer);
         Ok(())
@@ -193,6 +193,30 @@ impl Answers {
             .filter(|(case, answer)| plain.get(*case).is_some_and(|plain| plain.named != answer.named))
             .count()
     }
+}
+
+/// Diagnoses `case` in `place` under `setting`.
+fn asked(place: &Path, setting: String, case: &SweptCase) -> Result<Answer> {
+    let mut command = own_program::find()?.command();
+    command.args(["diagnose", "--rig", "rig.toml", "--json", "diagnosis.json"]).args(&case.trials);
+    if setting.is_empty() {
+        command.args(["--margins", MARGINS]);
+    } else {
+        command.args(["--vary", &setting]);
+    }
+    let (diagnosis, _) = run_command(command.current_dir(place), &place.join("diagnosis.json"))?;
+    let (verdict, named) = match diagnosis {
+        Ok(found) => (found.verdict.clone(), found.physics.into_iter().map(|physics| physics.name).collect()),
+        Err(error) => (error, BTreeSet::new()),
+    };
+    Ok(Answer { setting, case: case.name.clone(), verdict, named, was_asked: true })
+}
+
+/// Between which factors `threshold` changes nothing in the case at `place`, where that was noted.
+fn margin(place: &Path, threshold: &Threshold) -> Option<ThresholdMargin> {
+    let text = std::fs::read_to_string(place.join(MARGINS)).ok()?;
+    let margins: BTreeMap<String, ThresholdMargin> = serde_json::from_str(&text).ok()?;
+    margins.get(threshold.name).copied()
 }
 
 /// Right answers and false alarms under a setting, with the settings' own cases alone counted in the plain ones.
@@ -278,7 +302,7 @@ mod tests {
 
     fn answer(setting: &str, case: &str, named: &[&str]) -> Answer {
         let named = named.iter().map(|name| (*name).to_owned()).collect();
-        Answer { setting: setting.to_owned(), case: case.to_owned(), verdict: String::new(), named }
+        Answer { setting: setting.to_owned(), case: case.to_owned(), verdict: String::new(), named, was_asked: true }
     }
 
     #[test]
@@ -320,8 +344,8 @@ mod tests {
         std::fs::write(folder.path().join("answers.jsonl"), format!("{whole}\n{}", &whole[..20])).unwrap();
         let mut answers = Answers::open(folder.path()).unwrap();
         assert_eq!(answers.given.len(), 1);
-        let case = SweptCase { name: "a".to_owned(), truth: BTreeSet::new(), has_effort: true, trials: Vec::new() };
-        answers.ask(folder.path(), "", &case).unwrap();
+        let case = SweptCase { name: "a".to_owned(), truth: BTreeSet::new(), trials: Vec::new() };
+        answers.ask(folder.path(), None, &case).unwrap();
         assert_eq!(answers.given.len(), 1);
     }
 }

@@ -1,5 +1,6 @@
 //! The command line of `palpate diagnose`: files in, files out.
 
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -15,6 +16,7 @@ use crate::diagnose::report::html;
 use crate::diagnose::report::model_file::model_file;
 use crate::diagnose::report::recorded_motion::runnable;
 use crate::diagnose::threshold::vary;
+use crate::diagnose::threshold_margin::{ThresholdMargin, note_margins, noted_margins};
 use crate::error::{InputError, UsageError};
 use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
@@ -56,6 +58,9 @@ pub struct DiagnoseArgs {
     /// Multiply a threshold of the diagnosis by a factor, to see what hangs on it; `palpate sweep-thresholds --list` names them
     #[arg(long, value_name = "NAME=FACTOR", hide_short_help = true)]
     pub vary: Option<String>,
+    /// Write as JSON between which factors each threshold could be multiplied, alone, with the same answer to the byte
+    #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with = "vary")]
+    pub margins: Option<PathBuf>,
 }
 
 /// Runs `palpate diagnose`.
@@ -65,6 +70,9 @@ pub struct DiagnoseArgs {
 pub fn run(args: &DiagnoseArgs) -> Result<()> {
     if let Some(setting) = &args.vary {
         vary(setting, thresholds())?;
+    }
+    if args.margins.is_some() {
+        note_margins();
     }
     let rig = Rig::read(&args.rig)?;
     let origin = args.rig.display().to_string();
@@ -81,7 +89,7 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         path.as_deref().filter(|path| path.as_os_str() != "-").map(OutFile::create).transpose()
     };
     let (json, page, model_place) = (open(&args.json)?, open(&args.report)?, open(&args.model)?);
-    let experiment = open(&args.experiment)?;
+    let (experiment, margins) = (open(&args.experiment)?, open(&args.margins)?);
     let steps = Steps::new("diagnose");
     let say = |step: &str| steps.say(step);
     let mut found = diagnose(&rig, &origin, &trials, &simulation, args.seed, &say)?;
@@ -108,6 +116,11 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
     if let Some(file) = json {
         commit(file, text.as_bytes())?;
     }
+    if let Some(file) = margins {
+        let text =
+            serde_json::to_string_pretty(&margins_of_all()).context("the margins cannot be written as JSON")? + "\n";
+        commit(file, text.as_bytes())?;
+    }
     print(&found.answer, &text, args.json.as_deref().is_some_and(|path| path.as_os_str() == "-"))?;
     if args.experiment.is_some() && !is_designed {
         let why = if found.answer.alternatives.is_empty() {
@@ -124,6 +137,13 @@ pub fn run(args: &DiagnoseArgs) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The margin of every threshold, those included that nothing was compared with.
+fn margins_of_all() -> BTreeMap<&'static str, ThresholdMargin> {
+    let noted = noted_margins();
+    let of = |name: &str| noted.get(name).copied().unwrap_or(ThresholdMargin::UNUSED);
+    thresholds().map(|threshold| (threshold.name, of(threshold.name))).collect()
 }
 
 /// The text of the improved rig file.
@@ -198,6 +218,7 @@ fn check_outputs(args: &DiagnoseArgs) -> Result<()> {
         ("--report", &args.report),
         ("--model", &args.model),
         ("--experiment", &args.experiment),
+        ("--margins", &args.margins),
     ];
     let given = outputs.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
     output_paths::check(&inputs, &given.collect::<Vec<_>>())

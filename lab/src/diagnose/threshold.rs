@@ -4,6 +4,9 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
+use super::bound::Bound;
+use super::threshold_margin::{note_comparison, note_use};
+
 use crate::error::UsageError;
 
 /// Where a tuned number comes from.
@@ -48,9 +51,14 @@ pub struct Threshold {
 static VARIED: OnceLock<(&'static str, f64)> = OnceLock::new();
 
 impl Threshold {
-    /// The number; times the factor of [`vary`] where it is this one that is varied.
+    /// The number, to be reckoned with; times the factor of [`vary`] where it is this one that is varied.
     #[must_use]
     pub fn value(self) -> f64 {
+        note_use(self.name);
+        self.varied()
+    }
+
+    pub(super) fn varied(self) -> f64 {
         match VARIED.get() {
             Some((name, factor)) if *name == self.name => self.nominal * factor,
             _ => self.nominal,
@@ -80,13 +88,14 @@ pub fn vary(setting: &str, known: impl Iterator<Item = Threshold>) -> Result<(),
 
 impl PartialEq<Threshold> for f64 {
     fn eq(&self, other: &Threshold) -> bool {
-        *self == other.value()
+        self.partial_cmp(other) == Some(Ordering::Equal)
     }
 }
 
 impl PartialOrd<Threshold> for f64 {
     fn partial_cmp(&self, other: &Threshold) -> Option<Ordering> {
-        self.partial_cmp(&other.value())
+        note_comparison(other.name, *self / other.nominal);
+        self.partial_cmp(&other.varied())
     }
 }
 
@@ -94,27 +103,41 @@ impl PartialOrd<Threshold> for f64 {
 macro_rules! arithmetic {
     ($($operation:ident $method:ident),*) => {$(
         impl $operation<Threshold> for f64 {
-            type Output = f64;
-            fn $method(self, other: Threshold) -> f64 {
-                self.$method(other.value())
+            type Output = Bound;
+            fn $method(self, other: Threshold) -> Bound {
+                self.$method(Bound::of(other))
             }
         }
 
         impl $operation<f64> for Threshold {
-            type Output = f64;
-            fn $method(self, other: f64) -> f64 {
-                self.value().$method(other)
+            type Output = Bound;
+            fn $method(self, other: f64) -> Bound {
+                Bound::of(self).$method(other)
             }
         }
     )*};
 }
 
-arithmetic!(Add add, Sub sub, Mul mul, Div div);
+arithmetic!(Add add, Sub sub, Mul mul);
+
+impl Div<f64> for Threshold {
+    type Output = Bound;
+    fn div(self, other: f64) -> Bound {
+        Bound::of(self) / other
+    }
+}
+
+impl Div<Threshold> for f64 {
+    type Output = f64;
+    fn div(self, other: Threshold) -> f64 {
+        self / other.value()
+    }
+}
 
 impl Neg for Threshold {
-    type Output = f64;
-    fn neg(self) -> f64 {
-        -self.value()
+    type Output = Bound;
+    fn neg(self) -> Bound {
+        -Bound::of(self)
     }
 }
 
@@ -152,8 +175,9 @@ mod tests {
     #[test]
     fn a_threshold_is_reckoned_with_as_its_number() {
         assert!(1.9 < RATIO && 2.0 >= RATIO && 2.1 > RATIO && f64::NAN.partial_cmp(&RATIO).is_none());
-        assert_eq!((3.0 * RATIO, RATIO * 3.0, RATIO - 0.5, 0.5 - RATIO, RATIO + 1.0), (6.0, 6.0, 1.5, -1.5, 3.0));
-        assert_eq!((RATIO / 4.0, 4.0 / RATIO, -RATIO), (0.5, 2.0, -2.0));
+        let bounds = [3.0 * RATIO, RATIO * 3.0, RATIO - 0.5, 0.5 - RATIO, RATIO + 1.0, RATIO / 4.0, -RATIO];
+        assert_eq!(bounds.map(Bound::value), [6.0, 6.0, 1.5, -1.5, 3.0, 0.5, -2.0]);
+        assert_eq!(4.0 / RATIO, 2.0);
     }
 
     #[test]

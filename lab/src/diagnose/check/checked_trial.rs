@@ -40,7 +40,7 @@ impl<'a> CheckedTrial<'a> {
         let period = raw.period;
         let shaken = raw.figures.position.noise;
         let usual = travel(&raw.position) / (raw.len().max(2) as f64 * period);
-        let mut filter_width = MIN_WIDTH_PERIODS * period;
+        let mut filter_width = (MIN_WIDTH_PERIODS * period).value();
         let lens = loop {
             let stride = (filter_width / (2.0 * period)).round().max(1.0) as usize;
             let lens = DerivativeFilter::new(filter_width, period, stride);

@@ -113,7 +113,7 @@ fn onset(depth: &[f64], force: &[f64], noise: f64) -> Option<f64> {
     let outmost = quantile(depth.to_vec(), 0.1)?;
     let rest =
         middle(depth.iter().zip(force).filter(|(depth, _)| **depth <= outmost).map(|(_, force)| *force).collect())?;
-    let least = rest + (0.5 * FORCE_RISE_SIGMAS * noise).max(0.05 * range(force));
+    let least = rest + (0.5 * FORCE_RISE_SIGMAS * noise).max(0.05 * range(force)).value();
     let levels: Vec<Option<f64>> = slices.into_iter().map(middle).collect();
     let last_idle = levels.iter().rposition(|level| level.is_some_and(|level| level < least))?;
     Some(low + (last_idle + 1) as f64 / DEPTH_SLICES as f64 * (high - low))

@@ -126,7 +126,7 @@ fn force_stuck(view: &CheckedTrial<'_>, force: &[f64]) -> Option<RankedFinding> 
     let inside: Vec<f64> = view.depth.iter().copied().filter(|depth| *depth > 0.0).collect();
     let whole = range(force);
     let slope = whole / range(if inside.len() > MIN_EQUAL_ROWS { &inside } else { &view.depth });
-    let least = (MIN_MOVED_FRACTION * whole).max(4.0 * channel.resolution).max(6.0 * channel.noise);
+    let least = (MIN_MOVED_FRACTION * whole).max(4.0 * channel.resolution).max(6.0 * channel.noise).value();
     let noisy = is_noisy(view, force, channel.resolution);
     let ends = bounds(force);
     // What is read where nothing touches is the middle of the lower half, whatever the surface.
@@ -137,7 +137,7 @@ fn force_stuck(view: &CheckedTrial<'_>, force: &[f64]) -> Option<RankedFinding> 
         let is_end = force[run.first] == ends.0 || force[run.first] == ends.1;
         let moved = slope * (high - low);
         // Damping can hold a force still for a moment while the tool slows down: only at its end is a little enough.
-        let enough = if is_end { least } else { (MOVED_FRACTION_INSIDE_RANGE * whole).max(2.0 * least) };
+        let enough = if is_end { least } else { (MOVED_FRACTION_INSIDE_RANGE * whole).max(2.0 * least).value() };
         (!is_idle && slope.is_finite() && moved > enough) || noisy && run.end - run.first >= FROZEN_ROWS
     };
     let found: Vec<Run> = runs(force).into_iter().filter(standing).collect();

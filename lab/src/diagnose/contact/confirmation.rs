@@ -49,7 +49,8 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
             p_value: (COMPARISONS * likelihood_ratio_p(search.worth(&fit, less).gain, added_values(&fit, less)))
-                .min(1.0),
+                .min(1.0)
+                .shown(),
             without: *without,
         });
         let named = named.collect();

@@ -51,7 +51,7 @@ impl ContactModel {
             .map(|point| law.step(point as f64, 1.0, depth * point as f64 / (PATH_POINTS - 1) as f64, 0.0, 0.0, 0.0))
             .collect();
         let least = LEAST_FALL * path.iter().fold(0.0f64, |most, force| most.max(*force));
-        fall_along(&path, least)
+        fall_along(&path, least.value())
     }
 }
 

@@ -137,7 +137,7 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     let (left, unseen) = (folds.held_out(data, law), folds.judged(data, &model, taught));
     // Where next to nothing is above the noise, a share of that says nothing: what would not be notable counts as the least.
     let expected = data.expected();
-    let above = (left.energy - expected).max((NOTABLE_POWER - 1.0) * expected);
+    let above = (left.energy - expected).max(((NOTABLE_POWER - 1.0) * expected).value());
     let held_out_share = (left.energy - unseen.energy) / above;
     // By weight, and as it is told: in newtons.
     if held_out_share < LEAST_HELD_OUT_SHARE || rms(data, &unseen.residual) >= rms(data, &left.residual) {

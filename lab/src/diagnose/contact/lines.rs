@@ -58,7 +58,7 @@ impl Search<'_> {
     /// Frequencies that noise has near a line, each of which could be the loudest.
     fn line_trials(&self, frequency: f64) -> f64 {
         let longest = self.data.trials.iter().map(ContactTrial::duration_s).fold(0.0, f64::max);
-        (LINE_TOLERANCE * frequency * longest).max(1.0)
+        (LINE_TOLERANCE * frequency * longest).max(1.0).value()
     }
 }
 

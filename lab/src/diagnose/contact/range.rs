@@ -57,7 +57,7 @@ impl ContactModel {
         let within_step = 0.5 * scales.resolution;
         for _ in 0..others {
             ranges.push(if self.own.surface {
-                let prior = Some((0.0, SURFACE_PRIOR * scales.depth));
+                let prior = Some((0.0, (SURFACE_PRIOR * scales.depth).value()));
                 Range { prior, ..Range::linear(f64::NEG_INFINITY, f64::INFINITY, place) }
             } else {
                 let prior = Some((0.0, within_step.max(f64::MIN_POSITIVE)));
@@ -71,7 +71,7 @@ impl ContactModel {
             };
             ranges.extend(std::iter::repeat_n(range, if is_there { others } else { 0 }));
         };
-        each(self.own.zero, ZERO_PRIOR * scales.force);
+        each(self.own.zero, (ZERO_PRIOR * scales.force).value());
         each(self.own.scale, SCALE_PRIOR.value());
         for (at, term) in self.terms.iter().enumerate() {
             let start = self.first_value_of(at);
@@ -86,11 +86,14 @@ impl ContactModel {
         let scales = &self.scales;
         let (mut low, mut high) = (parameter.low, parameter.high);
         match parameter.limit {
-            Limit::ResolvableTime => low = low.max(LEAST_TIME_ROWS * scales.step_s),
+            Limit::ResolvableTime => low = (LEAST_TIME_ROWS * scales.step_s).max(low).value(),
             Limit::ReachedRange => {
-                low = low.max(LEAST_REACHED_FORCE * scales.force).max(scales.reached_force - self.force_zero.abs());
+                low = (LEAST_REACHED_FORCE * scales.force)
+                    .max(low)
+                    .max(scales.reached_force - self.force_zero.abs())
+                    .value();
             }
-            Limit::RepeatedCycles => low = low.max(LEAST_CYCLES / scales.duration_s),
+            Limit::RepeatedCycles => low = (LEAST_CYCLES / scales.duration_s).max(low).value(),
             Limit::ResolvableLength => low = low.max(scales.resolution),
             Limit::VisitedDepth => high = high.min(self.longest_way()),
             Limit::InstantOfJump => high = high.min(scales.duration_s),

@@ -124,7 +124,7 @@ impl Scales {
 /// and the deviation is known to within [`NOTABLE_POWER`].
 fn reached_force(trial: &ContactTrial) -> f64 {
     let greatest = trial.force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
-    greatest - (2.0 * (trial.len() as f64).ln() * NOTABLE_POWER * trial.force_variance).sqrt()
+    greatest - (2.0 * (trial.len() as f64).ln() * NOTABLE_POWER * trial.force_variance).value().sqrt()
 }
 
 /// How a trial went in and out.

@@ -42,7 +42,7 @@ impl Search<'_> {
         let above = |energy: f64| (energy - self.data.expected()).max(0.0);
         let scale = 0.5 / (rest.power * rest.correlated_rows);
         let logs = |rows: &[f64]| -> Vec<f64> { rows.iter().map(|row| -scale * row * row).collect() };
-        let block = (self.data.rows() / BLOCKS).max((VUONG_BLOCK_TIMES * rest.correlated_rows) as usize).max(4);
+        let block = (self.data.rows() / BLOCKS).max((VUONG_BLOCK_TIMES * rest.correlated_rows).value() as usize).max(4);
         Worth {
             gain: scale * taken,
             share: taken.max(0.0) / above(less.energy).max(taken.max(f64::MIN_POSITIVE)),

@@ -173,7 +173,7 @@ pub fn idle_friction(fit: &Fit) -> Option<usize> {
 #[must_use]
 pub fn is_likelier(more: &Fit, less: &Fit) -> bool {
     let values = more.values.len().saturating_sub(less.values.len()).max(1);
-    more.log_likelihood - less.log_likelihood > LEAST_GAIN + LEAST_GAIN_PER_VALUE * values as f64
+    more.log_likelihood - less.log_likelihood > LEAST_GAIN + (LEAST_GAIN_PER_VALUE * values as f64).value()
 }
 
 /// ln of the factor by which a fitted inertia may differ from the rig file's before the search starts from the latter, too.

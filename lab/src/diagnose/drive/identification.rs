@@ -30,7 +30,7 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
         return Some(first);
     }
     let range = if rig.is_rotary { scales.travel.min(TAU) } else { scales.travel };
-    let mut step = (12.0 * encoder_variance(&first.trials, &scales)).sqrt() * COARSER;
+    let mut step = (12.0 * encoder_variance(&first.trials, &scales)).sqrt() * COARSER.value();
     while step < MOST_COARSE * range {
         say("the drive: its slower motion");
         let coarser = NominalDrive { resolution: step, ..rig.clone() };

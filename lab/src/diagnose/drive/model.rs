@@ -44,7 +44,7 @@ impl Model {
             (-scales.period_s, scales.latest_effort_s)
         };
         let mut ranges = vec![
-            Range::relative(scales.inertia / INERTIA_FACTOR, scales.inertia * INERTIA_FACTOR),
+            Range::relative(scales.inertia / INERTIA_FACTOR, scales.inertia * INERTIA_FACTOR.value()),
             Range::absolute(0.0, f64::INFINITY, 0.1 * viscous),
             Range::absolute(earliest, latest, 0.3 * scales.period_s),
             Range::absolute(0.0, MOST_AVERAGING.value(), 0.1 * MOST_AVERAGING.value()),

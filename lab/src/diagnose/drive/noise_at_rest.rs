@@ -15,10 +15,10 @@ pub fn noise_at_rest(
     resolution: f64,
     travel: f64,
 ) -> Option<f64> {
-    let still = (STILL_STEPS * resolution).max(STILL_PART * travel);
+    let still = (STILL_STEPS * resolution).value().max((STILL_PART * travel).value());
     let mut powers = Vec::new();
     for (trial, force) in trials.iter().zip(missing) {
-        let rows = ((STILL_PERIODS / (band_hz * trial.period_s)).ceil() as usize).max(4);
+        let rows = ((STILL_PERIODS / (band_hz * trial.period_s)).value().ceil() as usize).max(4);
         for start in (0..trial.len().saturating_sub(rows)).step_by(rows) {
             let window = start..start + rows;
             let is_whole = !trial.restart[window.clone()].iter().skip(1).any(|restart| *restart);

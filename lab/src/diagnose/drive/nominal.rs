@@ -1,5 +1,6 @@
 //! The law that a rig file states of its drive, and its refitted values.
 
+use super::super::bound::Bound;
 use super::candidates::building_up;
 use super::criteria::{LATEST_ROWS, LATEST_S, LOWEST_BAND_HZ};
 use super::fit::{Effort, Fit, fit};
@@ -119,8 +120,8 @@ const EFFORT_STARTS: [[f64; 2]; 4] = [[-0.5, 0.25], [0.01, 0.0], [0.5, 0.0], [2.
 
 /// Latest effort that counts as a late recording, s.
 fn latest_effort_s(period_s: f64) -> f64 {
-    let of_rows = LATEST_ROWS * period_s;
-    of_rows.max(LATEST_S.value()).min(3.0 * of_rows)
+    let of_rows = LATEST_ROWS.value() * period_s;
+    Bound::of(LATEST_S).max(of_rows).min(3.0 * of_rows).value()
 }
 
 /// `nominal` with an effort that acts within a recorded row of its own, and the same with a first-order lag, where the effort is later

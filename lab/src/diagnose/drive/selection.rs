@@ -91,7 +91,7 @@ impl Search<'_> {
             grown.retain(|fit| !is_at_end(fit) && !hurries(fit, &self.nominal));
             let grown = distinct(grown);
             sets.extend(grown.iter().cloned());
-            let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE * fit.values.len() as f64;
+            let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE.value() * fit.values.len() as f64;
             let worthy = grown.iter().filter(|fit| self.is_worth(fit, &best));
             match worthy.max_by(|a, b| price(a).total_cmp(&price(b))) {
                 Some(top) => (best, is_waiting) = (top.clone(), false),

@@ -141,7 +141,7 @@ impl Term {
         let force = FORCE_STEP * scales.effort;
         let any = Range::absolute(f64::NEG_INFINITY, f64::INFINITY, force);
         let positive = Range::absolute(0.0, f64::INFINITY, force);
-        let swing = SLOWEST_SWING / scales.duration_s;
+        let swing = SLOWEST_SWING.value() / scales.duration_s;
         let fastest = 4.0 / scales.period_s;
         let stiffness = Range::relative(scales.inertia * swing * swing, scales.inertia * fastest * fastest);
         let damping = Range::relative(1e-2 * scales.inertia / scales.duration_s, scales.inertia / scales.period_s);
@@ -156,7 +156,7 @@ impl Term {
                 vec![positive, Range::absolute(LEAST_EXPONENT.value(), MOST_EXPONENT.value(), 0.1)]
             }
             Self::Presliding => {
-                vec![Range::relative(SHORTEST_PRESLIDING * scales.travel, LONGEST_PRESLIDING * scales.travel)]
+                vec![Range::relative(SHORTEST_PRESLIDING * scales.travel, (LONGEST_PRESLIDING * scales.travel).value())]
             }
             Self::LoadFriction => vec![Range::absolute(0.0, 1.0, 0.02)],
             Self::ConstantLoad => vec![any],

@@ -25,7 +25,7 @@ pub fn loudest_tone(missing: &[Vec<f64>]) -> f64 {
         // Least squares of sine and cosine over many periods: twice the squared sum over the rows.
         taken.iter_mut().zip(&spectrum).for_each(|(taken, bin)| *taken += 2.0 * bin.norm_sqr() / trial.len() as f64);
     }
-    let slowest = (FEWEST_PERIODS * length as f64 / longest.max(1) as f64) as usize;
+    let slowest = (FEWEST_PERIODS * length as f64 / longest.max(1) as f64).value() as usize;
     taken.iter().skip(slowest).copied().fold(0.0, f64::max) / rows.max(1) as f64
 }
 

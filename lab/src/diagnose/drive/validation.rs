@@ -67,7 +67,7 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
         let named = without.iter().zip(&comparisons).enumerate().map(|(nth, ((_, left), ratio))| NamedTerm {
             at: told[nth],
             held_out_share: share(left).clamp(0.0, 1.0),
-            p_value: (COMPARISONS * ratio.p_value()).min(1.0),
+            p_value: (COMPARISONS * ratio.p_value()).min(1.0).shown(),
             without: rms(&left.missing),
         });
         let named = named.collect();
@@ -102,7 +102,7 @@ impl RobustRatio {
 
     /// Whether it asks for the term.
     fn is_decisive(&self) -> bool {
-        self.gain > LEAST_GAIN + LEAST_GAIN_PER_VALUE * self.values.max(1) as f64
+        self.gain > LEAST_GAIN + (LEAST_GAIN_PER_VALUE * self.values.max(1) as f64).value()
     }
 
     fn p_value(&self) -> f64 {

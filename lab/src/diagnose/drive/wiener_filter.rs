@@ -93,7 +93,7 @@ fn averaged(periodogram: &[Complex<f64>]) -> Vec<Complex<f64>> {
     }
     (0..half)
         .map(|at| {
-            let width = LEAST_SPECTRUM_WIDTH.value().max(SPECTRUM_WIDTH * at as f64) as usize;
+            let width = LEAST_SPECTRUM_WIDTH.value().max((SPECTRUM_WIDTH * at as f64).value()) as usize;
             let (first, end) = (at.saturating_sub(width), (at + width + 1).min(half));
             (sums[end] - sums[first]) / (end - first) as f64
         })

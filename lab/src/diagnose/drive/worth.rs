@@ -44,7 +44,7 @@ impl Search<'_> {
         let power = |fit: &Fit| self.unexplained(fit).powi(2);
         let taken = (power(less) - power(more)).max(0.0);
         let all = self.unexplained(&self.nominal).min(self.scales.effort);
-        let block = ((BLOCK_S / self.scales.period_s) as usize).max(BLOCK_ROWS);
+        let block = ((BLOCK_S / self.scales.period_s).value() as usize).max(BLOCK_ROWS);
         let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
         Worth {
             share: share_taken(power(less), power(more), 2.0 * self.effort_noise_density * self.band_hz),
@@ -71,8 +71,11 @@ impl Search<'_> {
     /// with a link can always follow.
     fn explains_rows(&self, more: &Fit, less: &Fit) -> bool {
         let is_one_more = more.model.told_terms() == less.model.told_terms() + 1;
-        let most =
-            if more.model.has_link() || !is_one_more { 0.0 } else { MOST_LEFT_OF_MOVED * self.unexplained(less) };
+        let most = if more.model.has_link() || !is_one_more {
+            0.0
+        } else {
+            (MOST_LEFT_OF_MOVED * self.unexplained(less)).value()
+        };
         self.unexplained(more) < self.scales.effort.max(most)
     }
 }

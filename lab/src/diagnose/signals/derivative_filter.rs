@@ -25,7 +25,7 @@ impl DerivativeFilter {
     /// A Gaussian of `filter_width` seconds over rows of `period` seconds, evaluated every `stride` rows.
     #[must_use]
     pub fn new(filter_width: f64, period: f64, stride: usize) -> Self {
-        let half_width_rows = (HALF_WIDTH_SIGMAS * filter_width / period).ceil().max(1.0) as usize;
+        let half_width_rows = (HALF_WIDTH_SIGMAS * filter_width / period).value().ceil().max(1.0) as usize;
         let kernels = |shift: f64| FilterKernels::new(filter_width / period, half_width_rows, shift, period);
         let (plain, held) = (kernels(0.0), kernels(0.5));
         Self {

@@ -38,11 +38,11 @@ pub fn detect(raw: &UniformTrial) -> Option<MainsTone> {
 /// The loudest tone near `mains`, if it is far above what lies around.
 fn stands_out(raw: &UniformTrial, force: &[f64], mains: f64, seconds: f64) -> Option<MainsTone> {
     let apart = 0.25 / seconds;
-    let half = (MAINS_FREQUENCY_TOLERANCE * mains / apart).ceil() as i32;
+    let half = (MAINS_FREQUENCY_TOLERANCE * mains / apart).value().ceil() as i32;
     let near: Vec<MainsTone> = (-half..=half).map(|step| tone(raw, force, mains + f64::from(step) * apart)).collect();
     let best = near.into_iter().max_by(|a, b| power(a).total_cmp(&power(b)))?;
     // As far from the tone as its own skirts reach, and no farther than the spectrum of a motion stays alike.
-    let around = (2..=8).map(|step| f64::from(step) / 8.0 * BACKGROUND_FRACTION * mains);
+    let around = (2..=8).map(|step| f64::from(step) / 8.0 * (BACKGROUND_FRACTION * mains).value());
     let around: Vec<f64> =
         around.flat_map(|away| [mains - away, mains + away]).map(|at| power(&tone(raw, force, at))).collect();
     let mean = around.iter().sum::<f64>() / around.len() as f64;
