@@ -68,7 +68,7 @@ pub trait Effect: Sync {
     }
 
     /// The simpler form that form `form` is where none of what it builds on is there, and its values from `values` beside a spring of
-    /// `stiffness`: the same law. The values are as many.
+    /// `stiffness`: the same law, or the nearest to it.
     fn simpler(&self, _form: usize, _values: &[f64], _stiffness: f64) -> Option<(usize, Vec<f64>)> {
         None
     }
@@ -82,6 +82,11 @@ pub trait Effect: Sync {
     /// `None` where there is none.
     fn refined(&self, _form: usize, _values: &[f64], _scene: &ExcitationStats) -> Option<(usize, Vec<Vec<f64>>)> {
         None
+    }
+
+    /// How many multiples of its frequency, itself the first, a form that repeats in time has.
+    fn harmonics(&self, _form: usize) -> usize {
+        1
     }
 
     /// Whether the force may fall on the way in by form `form`, and rise again: over a click, or where a dome snaps through.

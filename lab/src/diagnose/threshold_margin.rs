@@ -30,7 +30,11 @@ impl ThresholdMargin {
 
     /// What is left of it beside a comparison with `ratio` times the threshold.
     fn compared(self, ratio: f64) -> Self {
-        let above = if ratio >= 1.0 { Some(self.above.map_or(ratio, |above| above.min(ratio))) } else { self.above };
+        let above = if ratio >= 1.0 && ratio.is_finite() {
+            Some(self.above.map_or(ratio, |above| above.min(ratio)))
+        } else {
+            self.above
+        };
         // What is no number or below zero compares alike with a threshold of any positive factor.
         let below = if ratio <= 1.0 { self.below.max(ratio) } else { self.below };
         Self { below, above }

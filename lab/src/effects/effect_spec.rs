@@ -80,7 +80,8 @@ pub struct Parameter {
 pub enum Limit {
     /// Nothing more.
     BoundsOnly,
-    /// A time that is longer than the step of the analysis: below it there is nothing to tell it from.
+    /// A time that is longer than the step of the analysis, below which there is nothing to tell it from, and so short that a part of what
+    /// passes with it passes within a recording: else it is a constant.
     ResolvableTime,
     /// The end of a channel's range, which the channel has to have reached.
     ReachedRange,

@@ -120,13 +120,18 @@ pub struct FrequencySearch {
     pub frequencies: Vec<(f64, f64, usize)>,
     /// Size of each part of the wave.
     pub size: f64,
+    /// How many multiples of a frequency, itself the first, the form has.
+    pub harmonics: usize,
 }
 
 impl FrequencySearch {
     /// Where the search starts at `frequency`.
     #[must_use]
     pub fn start(&self, frequency: f64) -> Start {
-        Start::sized(&[self.size, self.size, frequency], &[0, 1])
+        let parts = 2 * self.harmonics;
+        let mut values = vec![self.size; parts];
+        values.push(frequency);
+        Start::sized(&values, &(0..parts).collect::<Vec<_>>())
     }
 }
 

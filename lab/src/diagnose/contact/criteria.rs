@@ -71,6 +71,8 @@ thresholds! { "contact";
     LEAST_CYCLES = 1.8, "1", chosen;
     /// Shortest time of a memory or a lag, rows: what is quicker lies between two of them.
     LEAST_TIME_ROWS = 2.0, "rows", derived;
+    /// Part of what passes with a time constant that has to pass within the longest recording: with less it is a constant to all that was seen.
+    LEAST_PART_PASSED = 0.1, "1", derived;
     /// Part of the force's range from which a spring's force is said to fall on the way in.
     LEAST_FALL = 0.02, "1", chosen;
     /// Part of the force's range that either half of a single trial has to see: a stop that lies within one block is known to one half alone.

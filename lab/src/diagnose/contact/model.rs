@@ -146,12 +146,17 @@ impl ContactModel {
         self.terms.iter().any(|term| term.effect.may_fall(term.form))
     }
 
-    /// Frequencies of the waves that its effects hold, Hz.
+    /// Frequencies of the waves that its effects hold, with their harmonics, Hz.
     #[must_use]
     pub fn frequencies(&self, values: &[f64]) -> Vec<f64> {
         let terms = self.terms.iter().enumerate();
-        let waves = terms.flat_map(|(nth, term)| values[self.first_value_of(nth)..].iter().zip(term.parameters()));
-        waves.filter(|(_, parameter)| parameter.limit == Limit::RepeatedCycles).map(|(value, _)| *value).collect()
+        let of = |(nth, term): (usize, &Term)| {
+            let own = values[self.first_value_of(nth)..].iter().zip(term.parameters());
+            let waves = own.filter(|(_, parameter)| parameter.limit == Limit::RepeatedCycles);
+            let harmonics = term.effect.harmonics(term.form);
+            waves.flat_map(move |(value, _)| (1..=harmonics).map(move |times| times as f64 * value)).collect::<Vec<_>>()
+        };
+        terms.flat_map(of).collect()
     }
 
     /// Frequency of term `nth`, Hz, where it is a line of the spectrum.

@@ -265,6 +265,37 @@ mod tests {
     }
 
     #[test]
+    fn a_surface_that_breathes_is_one_effect_and_no_stiffness_that_varies() {
+        // A breath of 0.35 Hz and 2 mm as the fourth power of a cosine, in a phase of its own in each trial; the tool goes at 0.64 Hz.
+        let breath =
+            |phase: f64| move |t: f64| 2e-3 * ((std::f64::consts::PI * 0.35 * t + phase).cos().powi(4) - 0.375);
+        let trials = || {
+            let trial = |(seed, phase): (u64, f64)| {
+                let mut trial = TestContact::PLAIN.trial(seed);
+                let surface = breath(phase);
+                for row in 0..trial.len() {
+                    let time = trial.time[row];
+                    let rate = (surface(time + 1e-5) - surface(time - 1e-5)) / 2e-5;
+                    let law =
+                        |depth: f64, speed: f64| if depth > 0.0 { (300.0 * depth + 6.0 * speed).max(0.0) } else { 0.0 };
+                    let (x, v) = (trial.position[row], trial.velocity[row]);
+                    trial.force[row] += law(x - surface(time), v - rate) - law(x, v);
+                }
+                trial
+            };
+            [(1, 0.4), (2, 1.9)].map(trial).to_vec()
+        };
+        let outcome =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        assert_eq!((names(&outcome), outcome.verdict), (vec!["surface_motion"], Verdict::Explained));
+        let values = &outcome.chosen.values[outcome.chosen.model.first_value_of(0)..];
+        // The second harmonic is a quarter of the first, whatever the phase, and the frequency is told to a thousandth of a turn a second.
+        let part = |at: usize| values[at].hypot(values[at + 1]);
+        assert!((part(0) / 1e-3 - 1.0).abs() < 0.05 && (part(2) / 0.25e-3 - 1.0).abs() < 0.1, "{values:?}");
+        assert!((values[6] - 0.35).abs() < 2e-3, "{values:?}");
+    }
+
+    #[test]
     fn what_no_effect_explains_is_unknown() {
         let ripple = |x: f64| if x > 0.0 { 0.16 * (std::f64::consts::TAU * x / 2.5e-3).sin() } else { 0.0 };
         let trials = || [1, 2].map(|seed| TestContact::PLAIN.trial_with(seed, ripple)).to_vec();

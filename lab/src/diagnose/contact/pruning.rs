@@ -89,7 +89,7 @@ pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
         let own = start..start + model.count_of(&model.terms[nth]);
         if let Some((form, simpler)) = effect.simpler(form, &values[own.clone()], stiffness) {
             model.terms[nth].form = form;
-            values[own].copy_from_slice(&simpler);
+            values.splice(own, simpler);
         }
     }
     (model, values)

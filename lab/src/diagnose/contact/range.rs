@@ -1,6 +1,8 @@
 //! How the values of a contact's law may move: bounds, sizes, and what is expected of them beforehand.
 
-use super::criteria::{LEAST_CYCLES, LEAST_REACHED_FORCE, LEAST_TIME_ROWS, SCALE_PRIOR, SURFACE_PRIOR, ZERO_PRIOR};
+use super::criteria::{
+    LEAST_CYCLES, LEAST_PART_PASSED, LEAST_REACHED_FORCE, LEAST_TIME_ROWS, SCALE_PRIOR, SURFACE_PRIOR, ZERO_PRIOR,
+};
 use super::model::{ContactModel, index};
 use crate::effects::{Limit, Parameter};
 
@@ -86,7 +88,10 @@ impl ContactModel {
         let scales = &self.scales;
         let (mut low, mut high) = (parameter.low, parameter.high);
         match parameter.limit {
-            Limit::ResolvableTime => low = (LEAST_TIME_ROWS * scales.step_s).max(low).value(),
+            Limit::ResolvableTime => {
+                low = (LEAST_TIME_ROWS * scales.step_s).max(low).value();
+                high = high.min(scales.duration_s / LEAST_PART_PASSED);
+            }
             Limit::ReachedRange => {
                 low = (LEAST_REACHED_FORCE * scales.force)
                     .max(low)
@@ -147,5 +152,17 @@ mod tests {
         // A clamped tool goes to and fro on both sides: its longest way is the whole travel, however far away its preload lies.
         let clamped = ContactModel { bilateral: true, ..model };
         assert_eq!(clamped.ranges(&values)[yields].high, clamped.scales.travel());
+    }
+
+    #[test]
+    fn a_time_in_which_less_than_a_tenth_passes_is_refused_as_a_constant() {
+        // Twelve seconds: with 120 s a branch loses 9.5 % of its force in them.
+        let (model, mut values) = TestContact::PLAIN.law_with("stress_relaxation", 0, &[50.0, 0.4]);
+        let time = model.first_value_of(0) + 1;
+        let longest = model.ranges(&values)[time].high;
+        assert!((115.0..121.0).contains(&longest), "{longest}");
+        assert!(!model.is_at_end(&values));
+        values[time] = longest;
+        assert!(model.is_at_end(&values));
     }
 }

@@ -19,11 +19,15 @@ pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f
     let mut heard: Vec<(f64, f64)> = Vec::new();
     for &(first, apart, count) in &search.frequencies {
         let frequencies: Vec<f64> = (0..count).map(|at| first + apart * at as f64).collect();
-        let power: Vec<f64> = frequencies.par_iter().map(|frequency| rows.power(*frequency)).collect();
+        // Of a form with harmonics, what all of them take: the sum is largest at the fundamental (least squares: M. G. Christensen,
+        // A. Jakobsson, Multi-Pitch Estimation, 2009).
+        let harmonics = |frequency: f64| (1..=search.harmonics).map(move |times| times as f64 * frequency);
+        let all = |frequency: &f64| harmonics(*frequency).map(|one| rows.power(one)).sum::<f64>();
+        let power: Vec<f64> = frequencies.par_iter().map(all).collect();
         let level = |at: Option<usize>| at.and_then(|at| power.get(at)).copied().unwrap_or(f64::NEG_INFINITY);
         let peaks = (0..count).filter(|at| power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1)));
         // A wave in step with the motion itself is not told from a law of the motion.
-        let is_motion = |at: &usize| is_in_step(data, fit, frequencies[*at]);
+        let is_motion = |at: &usize| harmonics(frequencies[*at]).any(|one| is_in_step(data, fit, one));
         heard.extend(peaks.filter(|at| !is_motion(at)).map(|at| (power[at], frequencies[at])));
     }
     heard.sort_by(|a, b| b.0.total_cmp(&a.0));

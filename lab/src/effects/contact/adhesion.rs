@@ -60,15 +60,52 @@ static SPEC: EffectSpec = EffectSpec {
                 Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
             ],
         },
+        Form {
+            name: "capillary",
+            equation: "once touched, F is less by pull_off_force in contact, and -pull_off_force (1 - height / release_height) above the surface",
+            parameters: &[
+                Parameter::new("pull_off_force", Word::new("N", "N m"), "the pull", 0.0, f64::INFINITY),
+                Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
+            ],
+        },
+        Form {
+            name: "sphere",
+            equation: "with Hertz's law F = c x^1.5 beneath: once touched, x = h - b h^(1/4), F = c (h^1.5 - 1.5 b h^(3/4)), b = 4/3 sqrt(pull_off_force / c), until x is least",
+            parameters: &[Parameter::new(
+                "pull_off_force",
+                Word::new("N", "N m"),
+                "greatest pull under a given force; under a given motion it lets go at 5/9 of it",
+                0.0,
+                f64::INFINITY,
+            )],
+        },
     ],
     excited_by: "leaving the surface, slowly and often",
     resembles: &["force_bias", "lost_motion"],
     source: "a liquid bridge; D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
 };
 
+/// Indices of the forms.
+mod form {
+    pub const ATTRACTION: usize = 1;
+    pub const COHESIVE: usize = 2;
+    pub const BRIDGE: usize = 3;
+    pub const CAPILLARY: usize = 4;
+    pub const SPHERE: usize = 5;
+}
+
 impl Effect for Adhesion {
     fn spec(&self) -> &'static EffectSpec {
         &SPEC
+    }
+
+    fn builds_on(&self, form: usize) -> &'static [&'static str] {
+        if form == form::SPHERE { &["nonlinear_stiffness"] } else { &[] }
+    }
+
+    fn simpler(&self, form: usize, values: &[f64], stiffness: f64) -> Option<(usize, Vec<f64>)> {
+        // On a straight spring a neck that ends where the spring pulls as much.
+        (form == form::SPHERE).then(|| (0, vec![values[0], values[0] / stiffness.max(f64::MIN_POSITIVE)]))
     }
 
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
@@ -78,9 +115,12 @@ impl Effect for Adhesion {
         let force = 0.05 * scene.force;
         let height = force / scene.stiffness.max(f64::MIN_POSITIVE);
         let away = (scene.travel.1 - scene.travel.0 - scene.depth).max(0.3 * scene.depth);
+        if form == form::SPHERE {
+            return [0.2, 1.0, 4.0].iter().map(|times| Start::at(&[times * force])).collect();
+        }
         let near = [0.3, 1.0, 3.0, 10.0].iter().map(|factor| (factor * height).min(away));
         let heights = near.chain([0.05, 0.2, 0.5].iter().map(|part| part * away));
-        if form == 2 {
+        if form == form::COHESIVE {
             return heights.map(|height| Start::sized(&[force, height, 1.5 * height], &[0])).collect();
         }
         heights.map(|height| Start::sized(&[force, height], &[0])).collect()
@@ -88,6 +128,10 @@ impl Effect for Adhesion {
 
     fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
         if touch.bilateral {
+            return;
+        }
+        if form == form::SPHERE {
+            Sphere::act(values[0], state, touch);
             return;
         }
         // state: whether the surface holds on.
@@ -99,9 +143,17 @@ impl Effect for Adhesion {
         if state[0] == 0.0 {
             return;
         }
-        if form == 1 {
-            touch.force -= values[0];
-            return;
+        match form {
+            form::ATTRACTION => {
+                touch.force -= values[0];
+                return;
+            }
+            form::CAPILLARY => {
+                let above = (-touch.position).max(0.0) / values[1].max(f64::MIN_POSITIVE);
+                touch.force -= values[0] * (1.0 - above).max(0.0);
+                return;
+            }
+            _ => {}
         }
         // Within the surface the law itself pulls, above it the neck as the spring would.
         let stretched = if touch.position > 0.0 {
@@ -109,7 +161,7 @@ impl Effect for Adhesion {
         } else {
             touch.stiffness * touch.position + touch.damping * touch.velocity + touch.extra
         };
-        if form == 3 {
+        if form == form::BRIDGE {
             touch.force = if touch.position > 0.0 {
                 touch.force.max(0.0) + stretched.min(0.0).max(-values[0])
             } else {
@@ -118,12 +170,143 @@ impl Effect for Adhesion {
             return;
         }
         let mut pull = values[0];
-        if form == 2 {
+        if form == form::COHESIVE {
             let beyond = (-touch.position - pull / touch.stiffness.max(f64::MIN_POSITIVE)).max(0.0);
             pull *= (1.0 - beyond / values[2].max(f64::MIN_POSITIVE)).max(0.0);
         }
         if touch.velocity < 0.0 || touch.position < 0.0 {
             touch.force = touch.force.max(0.0) + stretched.min(0.0).max(-pull);
+        }
+    }
+}
+
+/// Steps of Newton's method, which comes down on the root from above and doubles its digits.
+const STEPS: usize = 12;
+
+/// A sphere that adheres (Johnson, Kendall, Roberts). The circle of contact is that of Hertz's law at a virtual depth h, from which a flat punch
+/// of that circle is drawn back by b h^(1/4); b is what makes the greatest pull that asked for.
+struct Sphere {
+    /// c of Hertz's law c x^1.5.
+    hertz: f64,
+    /// b.
+    drawn_back: f64,
+}
+
+impl Sphere {
+    fn new(hertz: f64, pull_off_force: f64) -> Self {
+        Self { hertz, drawn_back: 4.0 / 3.0 * (pull_off_force / hertz).sqrt() }
+    }
+
+    /// Lowest place at which it holds on, negative: below it no circle of contact has a balance.
+    fn last_place(&self) -> f64 {
+        let root = (0.25 * self.drawn_back).cbrt();
+        root * (root.powi(3) - self.drawn_back)
+    }
+
+    /// The force at `place`, no lower than [`Sphere::last_place`].
+    fn force(&self, place: f64) -> f64 {
+        // u^4 - b u = place, u the fourth root of h: the greater root, from above it. All derivatives are positive there, so the parabola about
+        // the least place meets it late, and exactly where the two roots meet, where Newton's steps alone would only halve.
+        let least = (0.25 * self.drawn_back).cbrt();
+        let parabola = least + ((place - self.last_place()).max(0.0) / (6.0 * least * least)).sqrt();
+        let mut root = parabola.min(self.drawn_back.cbrt() + place.max(0.0).sqrt().sqrt());
+        for _ in 0..STEPS {
+            let slope = 4.0 * root.powi(3) - self.drawn_back;
+            if slope <= 0.0 {
+                break;
+            }
+            let step = (root.powi(4) - self.drawn_back * root - place) / slope;
+            root -= step;
+            if step.abs() <= f64::EPSILON * root {
+                break;
+            }
+        }
+        self.hertz * (root.powi(6) - 1.5 * self.drawn_back * root.powi(3))
+    }
+
+    /// Puts the adhering sphere in the place of the spring. state: whether the surface holds on, deepest place of this touch, c there.
+    fn act(pull_off_force: f64, state: &mut EffectState, touch: &mut ContactState) {
+        if touch.position > 0.0 {
+            if state[0] == 0.0 {
+                (state[0], state[1]) = (1.0, 0.0);
+            }
+            if touch.position > state[1] {
+                (state[1], state[2]) = (touch.position, touch.spring / touch.position.powf(1.5));
+            }
+        }
+        if state[0] == 0.0 || state[2] <= 0.0 || pull_off_force <= 0.0 {
+            return;
+        }
+        let sphere = Self::new(state[2], pull_off_force);
+        if touch.position < sphere.last_place() {
+            state[0] = 0.0;
+            return;
+        }
+        touch.force += sphere.force(touch.position) - sphere.hertz * touch.position.max(0.0).powf(1.5);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::contact_simulator::{ActiveEffect, ContactSimulator};
+    use crate::rig::Contact;
+
+    /// Force and place of an adhering sphere by the radius of its circle of contact, as Johnson, Kendall and Roberts state them: radius of
+    /// the sphere, reduced modulus, work of adhesion.
+    fn by_circle(radius: f64, modulus: f64, work: f64, circle: f64) -> [f64; 2] {
+        let pi = std::f64::consts::PI;
+        let place = circle.powi(2) / radius - (2.0 * pi * work * circle / modulus).sqrt();
+        let force =
+            4.0 * modulus * circle.powi(3) / (3.0 * radius) - (8.0 * pi * work * modulus * circle.powi(3)).sqrt();
+        [place, force]
+    }
+
+    #[test]
+    fn an_adhering_sphere_is_that_of_johnson_kendall_and_roberts_and_lets_go_where_theirs_does() {
+        let (radius, modulus, work): (f64, f64, f64) = (5e-3, 1e6, 0.05);
+        let hertz = 4.0 / 3.0 * modulus * radius.sqrt();
+        let pull_off = 1.5 * std::f64::consts::PI * work * radius;
+        let smallest = (std::f64::consts::PI * work * radius.powi(2) / (8.0 * modulus)).cbrt();
+        let deepest: f64 = 1e-5;
+        let contact = Contact { surface: 0.0, stiffness: hertz * deepest.sqrt(), damping: 0.0, bilateral: false };
+        let spring = crate::effects::find("nonlinear_stiffness").unwrap();
+        let actives = [
+            ActiveEffect { effect: spring, form: 0, values: &[1.5, deepest] },
+            ActiveEffect { effect: &Adhesion, form: form::SPHERE, values: &[pull_off] },
+        ];
+        let mut law = ContactSimulator::new(contact, &actives);
+        let mut at = |place: f64| law.step(0.0, 1e-3, place, -1e-6, 0.0, 0.0);
+        assert_eq!(at(-1e-6), 0.0, "nothing acts before the touch");
+        at(deepest);
+        let mut lowest = f64::INFINITY;
+        // Out along the circle, which shrinks to its least; the force is exact to the law's rounding.
+        for part in 0..=100 {
+            let circle = smallest * (1.0 + 4.0 * (1.0 - f64::from(part) / 100.0) + 1e-6);
+            let [place, force] = by_circle(radius, modulus, work, circle);
+            if place <= deepest {
+                assert!((at(place) - force).abs() < 1e-6 * pull_off, "{place}: {} {force}", at(place));
+                lowest = lowest.min(force);
+            }
+        }
+        // The greatest pull along a given motion is the pull-off force, passed on the way to 5/9 of it.
+        assert!((lowest + pull_off).abs() < 1e-3 * pull_off, "{lowest} {pull_off}");
+        let [last, force] = by_circle(radius, modulus, work, smallest);
+        assert!((force + 5.0 / 9.0 * pull_off).abs() < 1e-3 * pull_off, "{force}");
+        assert_eq!(at(last - 1e-9), 0.0);
+        assert_eq!(at(last + 1e-9), 0.0, "once let go it does not pull again");
+    }
+
+    #[test]
+    fn a_liquid_bridge_pulls_alike_in_contact_and_less_with_height_and_ruptures() {
+        let contact = Contact { surface: 0.0, stiffness: 100.0, damping: 0.0, bilateral: false };
+        let actives = [ActiveEffect { effect: &Adhesion, form: form::CAPILLARY, values: &[0.4, 2e-3] }];
+        let mut law = ContactSimulator::new(contact, &actives);
+        let path = [-1e-3, 1e-3, 5e-3, 1e-9, -1e-3, -1.9e-3, -2.1e-3, -1e-3];
+        let forces = path.map(|place| law.step(0.0, 1e-3, place, -1e-3, 0.0, 0.0));
+        let expected = [0.0, 0.1 - 0.4, 0.5 - 0.4, -0.4, -0.2, -0.02, 0.0, 0.0];
+        for (force, expected) in forces.iter().zip(expected) {
+            assert!((force - expected).abs() < 1e-6, "{forces:?}");
         }
     }
 }

@@ -64,6 +64,26 @@ static SPEC: EffectSpec = EffectSpec {
                 f64::INFINITY,
             )],
         },
+        Form {
+            name: "asymmetric",
+            equation: "spring = K x + quadratic x^2 + cubic x^3, of a clamped contact: stiffer one way than the other",
+            parameters: &[
+                Parameter::new(
+                    "quadratic",
+                    Word::new("N/m^2", "N m/rad^2"),
+                    "above zero stiffer under pressure, below it under tension",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                ),
+                Parameter::new(
+                    "cubic",
+                    Word::new("N/m^3", "N m/rad^3"),
+                    "above zero it hardens, below it softens",
+                    f64::NEG_INFINITY,
+                    f64::INFINITY,
+                ),
+            ],
+        },
     ],
     excited_by: "contacts that reach two or more depths",
     resembles: &["layered_stiffness", "plastic_set"],
@@ -75,6 +95,7 @@ mod form {
     pub const POWER_LAW: usize = 0;
     pub const EXPONENTIAL: usize = 2;
     pub const HYPERBOLIC: usize = 3;
+    pub const ASYMMETRIC: usize = 4;
 }
 
 impl Effect for NonlinearStiffness {
@@ -94,6 +115,11 @@ impl Effect for NonlinearStiffness {
             }
             form::EXPONENTIAL => per_depth(&[-1.0, -0.3, 0.3, 1.0, 2.5]),
             form::HYPERBOLIC => per_depth(&[0.3, 1.0, 4.0]),
+            form::ASYMMETRIC if !scene.is_bilateral => Vec::new(),
+            form::ASYMMETRIC => {
+                let [first, second] = [1, 2].map(|power| 0.1 * scene.stiffness / scene.depth.powi(power));
+                vec![Start::sized(&[first, second], &[0, 1])]
+            }
             _ => vec![Start::sized(&[0.1 * scene.stiffness / scene.depth.powi(2)], &[0])],
         }
     }
@@ -112,6 +138,7 @@ impl Effect for NonlinearStiffness {
             }
             form::EXPONENTIAL => {}
             form::HYPERBOLIC => touch.spring = straight / (1.0 + values[0] * depth),
+            form::ASYMMETRIC => touch.spring += (values[0] + values[1] * touch.depth) * depth * depth,
             _ => touch.spring += values[0] * touch.depth * depth * depth,
         }
     }

@@ -98,6 +98,7 @@ impl Effect for TimeVaryingStiffness {
             weight: ToneWeight::Depth,
             frequencies: vec![(2.0 / scene.duration, 0.5 / scene.duration, 60)],
             size: 0.1,
+            harmonics: 1,
         })
     }
 

@@ -59,7 +59,12 @@ impl Effect for MainsHum {
         };
         let frequencies: Vec<_> = MAINS_HZ.into_iter().filter(|mains| *mains < 0.42 / scene.step).map(band).collect();
         let size = 0.01 * scene.force;
-        (!frequencies.is_empty()).then_some(FrequencySearch { weight: ToneWeight::Even, frequencies, size })
+        (!frequencies.is_empty()).then_some(FrequencySearch {
+            weight: ToneWeight::Even,
+            frequencies,
+            size,
+            harmonics: 1,
+        })
     }
 
     fn lines(&self) -> &'static [f64] {
