@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 
 use super::bound::Bound;
 use super::threshold_margin::{note_comparison, note_use};
-
 use crate::error::UsageError;
 
 /// Where a tuned number comes from.

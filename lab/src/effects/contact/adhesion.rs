@@ -8,6 +8,10 @@ use crate::rig::Word;
 /// See [`SPEC`].
 pub struct Adhesion;
 
+const PULL: Parameter = Parameter::new("pull_off_force", Word::new("N", "N m"), "the pull", 0.0, f64::INFINITY);
+const RELEASE_HEIGHT: Parameter =
+    Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY);
+
 static SPEC: EffectSpec = EffectSpec {
     name: "adhesion",
     place: Place::Contact,
@@ -32,17 +36,14 @@ static SPEC: EffectSpec = EffectSpec {
         Form {
             name: "attraction",
             equation: "once touched, F is less by pull_off_force until the tool is release_height above the surface",
-            parameters: &[
-                Parameter::new("pull_off_force", Word::new("N", "N m"), "the pull", 0.0, f64::INFINITY),
-                Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
-            ],
+            parameters: &[PULL, RELEASE_HEIGHT],
         },
         Form {
             name: "cohesive",
             equation: "as neck, the pull falling from pull_off_force in a straight line that would end after softening_length, until release_height",
             parameters: &[
                 Parameter::new("pull_off_force", Word::new("N", "N m"), "greatest pull", 0.0, f64::INFINITY),
-                Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
+                RELEASE_HEIGHT,
                 Parameter::new(
                     "softening_length",
                     Word::new("m", "rad"),
@@ -57,16 +58,13 @@ static SPEC: EffectSpec = EffectSpec {
             equation: "leaving, F falls no lower than -pull_off_force, and is -pull_off_force (1 - height / release_height) above the surface",
             parameters: &[
                 Parameter::new("pull_off_force", Word::new("N", "N m"), "greatest pull", 0.0, f64::INFINITY),
-                Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
+                RELEASE_HEIGHT,
             ],
         },
         Form {
             name: "capillary",
             equation: "once touched, F is less by pull_off_force in contact, and -pull_off_force (1 - height / release_height) above the surface",
-            parameters: &[
-                Parameter::new("pull_off_force", Word::new("N", "N m"), "the pull", 0.0, f64::INFINITY),
-                Parameter::new("release_height", Word::new("m", "rad"), "height at which it ends", 0.0, f64::INFINITY),
-            ],
+            parameters: &[PULL, RELEASE_HEIGHT],
         },
         Form {
             name: "sphere",
