@@ -153,22 +153,22 @@ const ROUNDS: usize = 4;
 /// Longest difference to either side, in steps: a factor of e^0.5, or half a size.
 const LONGEST_DIFFERENCE: f64 = 0.5;
 
-/// The spread of `count` values whose derivatives are differences over their own intervals: `linearised` gives the residual and the derivatives
-/// by one step of each value, taken over so many steps to either side. The residual has a power of one, and nothing is known beforehand.
+/// The spread of values whose derivatives are differences over their own intervals: `linearised` gives the residual and the derivatives
+/// by one step of each value, taken over so many steps to either side. The residual has a power of one; `priors` are as in [`spread`].
 ///
 /// For a smooth law the difference is the tangent. The likelihood of a play has a step wherever a side strikes one row earlier, and a tangent
 /// beside such a step says nothing of what a larger change does: its intervals are up to a hundred times too narrow. The difference of a
 /// function that is not smooth has to be as long as what it is used for (J. J. Moré, S. M. Wild, *ACM Trans. Math. Softw.* 38, 2012).
 pub fn spread_over_own_width(
-    count: usize,
+    priors: &[f64],
     rows: Clusters<'_>,
     linearised: impl Fn(&[f64]) -> (Vec<f64>, Vec<Vec<f64>>),
 ) -> Spread {
     let spread_over = |apart: &[f64]| {
         let (residual, columns) = linearised(apart);
-        spread(&residual, &columns, &vec![0.0; count], 1.0, rows)
+        spread(&residual, &columns, priors, 1.0, rows)
     };
-    let mut found = spread_over(&vec![FIRST_DIFFERENCE; count]);
+    let mut found = spread_over(&vec![FIRST_DIFFERENCE; priors.len()]);
     for _ in 1..ROUNDS {
         let clamped = |half: &f64| half.clamp(FIRST_DIFFERENCE, LONGEST_DIFFERENCE);
         found = spread_over(&found.half_widths.iter().map(clamped).collect::<Vec<_>>());
@@ -345,7 +345,7 @@ mod tests {
         let stretch = in_sixteen(rows);
         let told = Clusters { stretch: &stretch, place: &[], rounding: &[] };
         let plain = NORMAL_97_5 * deviation / (rows as f64).sqrt();
-        let found = spread_over_own_width(1, told, linearised).half_widths[0];
+        let found = spread_over_own_width(&[0.0], told, linearised).half_widths[0];
         // See above: sixteen stretches tell it to 18 %.
         assert!(found > 0.95 * plain && found < 1.65 * plain, "{found} {plain}");
         let (residual, columns) = linearised(&[FIRST_DIFFERENCE]);

@@ -47,7 +47,8 @@ pub fn export(export: &Export<'_>, text: &str) -> Result<Exported, InputError> {
 
 fn refusal(effect: &FoundEffect, target: Target) -> Option<&'static str> {
     match (effect.name, effect.form) {
-        ("effort_saturation", _) => None,
+        ("effort_saturation", "symmetric") => None,
+        ("effort_saturation", _) => Some("a joint's effort limit has a sharp corner"),
         ("coulomb_friction", "symmetric") if target == Target::Drake => Some("Drake's joints have no dry friction"),
         ("coulomb_friction", "symmetric") => None,
         ("coulomb_friction", _) => Some("a joint's friction is the same both ways"),

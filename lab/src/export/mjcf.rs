@@ -40,12 +40,14 @@ pub fn export(export: &Export<'_>, text: &str) -> Result<Exported, InputError> {
 pub fn refusal(effect: &FoundEffect) -> Option<&'static str> {
     Some(match (effect.name, effect.form) {
         ("coulomb_friction" | "gravity_load" | "cogging" | "backlash" | "transmission_compliance", _)
-        | ("effort_saturation" | "effort_lag" | "channel_delay", _)
+        | ("effort_lag" | "channel_delay", _)
+        | ("effort_saturation", "symmetric")
         | ("stribeck_friction", "gaussian")
         | ("force_saturation", "symmetric") => return None,
         ("stribeck_friction", _) => "MuJoCo's bristles know the Gaussian decay only",
         ("sublinear_friction", _) => "MuJoCo's damping is a polynomial of the speed with whole powers",
         ("load_dependent_friction", _) => "no element makes a joint's friction depend on a contact force",
+        ("effort_saturation", _) => "an actuator's limit has a sharp corner",
         ("force_saturation", _) => "a sensor's cutoff has a sharp corner",
         ("force_bias" | "force_drift" | "force_gain" | "force_lag" | "mains_hum", _) => {
             "a sensor has noise, delay and cutoff alone"
@@ -220,10 +222,13 @@ impl Writer<'_> {
         let k = std::f64::consts::TAU / effect.value("pitch");
         let (sine, cosine) = (-effect.value("sine"), -effect.value("cosine"));
         self.passive_force(&effect.words, |joint| passive_force::wave(joint, "cogging", k, sine, cosine));
-        if effect.form == "two_harmonics" {
-            let (sine, cosine) = (-effect.value("second_sine"), -effect.value("second_cosine"));
-            self.passive_force(&effect.words, |joint| passive_force::wave(joint, "cogging_2", 2.0 * k, sine, cosine));
-        }
+        let second = match effect.form {
+            "two_harmonics" => 2.0 * k,
+            "two_patterns" => std::f64::consts::TAU / effect.value("second_pitch"),
+            _ => return,
+        };
+        let (sine, cosine) = (-effect.value("second_sine"), -effect.value("second_cosine"));
+        self.passive_force(&effect.words, |joint| passive_force::wave(joint, "cogging_2", second, sine, cosine));
     }
 
     fn passive_force(&mut self, words: &str, element: impl FnOnce(&str) -> String) {

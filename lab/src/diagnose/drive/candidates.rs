@@ -7,8 +7,10 @@ use super::fit::{Effort, Fit, fit};
 use super::likelihood::Data;
 use super::model::{Model, NOMINAL, index};
 use super::noise::Noise;
+use super::ripples::ripples;
 use super::scales::Scales;
 use super::term::{Term, wavenumber};
+use super::trial::DriveTrial;
 
 /// A term and the values that its search starts from.
 pub struct Candidate {
@@ -58,7 +60,7 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
         let slow = [1.5, 4.0, 8.0].map(|turn| vec![0.0, 0.0, turn / scales.travel]).to_vec();
         offer(Term::AngleLoad, if scales.is_rotary { vec![vec![0.0; 3]] } else { slow });
     }
-    if base.model.terms.iter().filter(|term| **term == Term::Cogging).count() < MOST_RIPPLES {
+    if ripples(base).len() < MOST_RIPPLES {
         let pitches = repeating_pitches(data, &scales, disturbance);
         offer(Term::Cogging, pitches.into_iter().map(|pitch| vec![0.0, 0.0, wavenumber(pitch)]).collect());
     }
@@ -67,14 +69,16 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
     }
     if !has("effort_saturation") {
         offer(Term::EffortLimit, vec![vec![0.95 * scales.peak_effort], vec![0.7 * scales.peak_effort]]);
+        offer(Term::SmoothLimit, vec![vec![scales.peak_effort]]);
     }
-    if data.trials.iter().all(|trial| trial.force.is_some()) {
-        for (term, start) in [
-            (Term::LoadFriction, 0.02),
-            (Term::ForceGain, 0.0),
-            (Term::ForceDelay, 0.0),
-            (Term::ToolInertia, 0.01 * base.values[index::INERTIA]),
-        ] {
+    let every = |has: fn(&DriveTrial) -> bool| data.trials.iter().all(has);
+    if every(|trial| trial.force.is_some() || trial.load.is_some()) && !has("load_dependent_friction") {
+        offer(Term::LoadFriction, vec![vec![0.02]]);
+    }
+    if every(|trial| trial.force.is_some()) {
+        for (term, start) in
+            [(Term::ForceGain, 0.0), (Term::ForceDelay, 0.0), (Term::ToolInertia, 0.01 * base.values[index::INERTIA])]
+        {
             if !has(term.name()) {
                 offer(term, vec![vec![start]]);
             }
@@ -268,6 +272,7 @@ pub fn simpler(fit: &Fit, at: usize) -> Vec<(Model, Vec<f64>)> {
         Term::Stribeck => vec![replaced(Term::Coulomb, &[values[0] + 0.3 * values[1]])],
         Term::Sublinear if !fit.model.terms.iter().any(other_rub) => vec![replaced(Term::Coulomb, &[0.5 * values[0]])],
         Term::AngleLoad => vec![replaced(Term::ConstantLoad, &[0.0])],
+        Term::TwoRipples => values.chunks_exact(3).map(|one| replaced(Term::Cogging, one)).collect(),
         Term::Play(side) => {
             vec![replaced(Term::Compliance(*side), &[0.1 * values[0], values[1], values[2], values[4]])]
         }

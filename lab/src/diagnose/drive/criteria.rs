@@ -89,6 +89,9 @@ thresholds! { "drive";
     LATEST_ROWS = 20.0, "rows", chosen;
     /// The same at least, s.
     LATEST_S = 0.02, "s", chosen;
+    /// Limit of an effort that nears it, over the greatest effort that was commanded, from which it is none: at a third of the limit the drive
+    /// gives 3 tanh(1/3) = 0.96 of what is commanded, as far as a motor's constant is known. Chosen.
+    GENTLEST_LIMIT = 3.0, "1", chosen;
     /// Largest averaging of a recorded effort, rows^2: that of a mean over three rows, 9 / 24, and 1 / 8 for the middle between two rows.
     MOST_AVERAGING = 0.5, "rows^2", derived;
     /// Least exponent of the speed of a friction that is told from dry friction.

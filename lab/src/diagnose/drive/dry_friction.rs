@@ -2,7 +2,7 @@
 
 use super::presliding::Slips;
 
-/// Dry friction: level + excess exp(-(v / speed)^2) + sublinear (|v| / reference)^exponent + share |force|.
+/// Dry friction: level + excess exp(-(v / speed)^2) + sublinear (|v| / reference)^exponent + share |borne|.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DryFriction {
     /// N or N m.
@@ -17,7 +17,7 @@ pub struct DryFriction {
     pub sublinear_exponent: f64,
     /// The speed at which it is `sublinear`.
     pub reference_speed: f64,
-    /// Share of the contact force.
+    /// Share of what is borne: the contact's force and a load that is known.
     pub load_share: f64,
     /// Way over which it builds up after a turn, m or rad; zero: at once.
     pub presliding: f64,
@@ -36,10 +36,10 @@ impl DryFriction {
         presliding: 0.0,
     };
 
-    /// Its size at `speed` (positive) while the contact bears `force`; at rest it holds up to that.
+    /// Its size at `speed` (positive) while `borne` rests on what rubs; at rest it holds up to that.
     #[must_use]
-    pub fn level(&self, speed: f64, force: f64) -> f64 {
-        let mut level = self.coulomb + self.load_share * force.abs();
+    pub fn level(&self, speed: f64, borne: f64) -> f64 {
+        let mut level = self.coulomb + self.load_share * borne.abs();
         if self.stribeck_excess != 0.0 {
             level += self.stribeck_excess * (-(speed / self.stribeck_speed).powi(2)).exp();
         }

@@ -14,6 +14,8 @@ pub struct Inputs {
     pub effort: Vec<f64>,
     /// Force with which the tool pushes on what it touches; zero where none is recorded.
     pub force: Vec<f64>,
+    /// The load that is known; zero where none is given.
+    pub load: Vec<f64>,
 }
 
 impl Inputs {
@@ -27,7 +29,14 @@ impl Inputs {
     #[must_use]
     pub fn with_force(&self, other: &Self) -> Self {
         let force = self.force.iter().zip(&other.force).map(|(force, other)| force + other).collect();
-        Self { effort: self.effort.clone(), force }
+        Self { effort: self.effort.clone(), force, load: self.load.clone() }
+    }
+
+    /// What the transmission bears over the interval that ends at `row`: the contact's force and the load, N or N m. Friction that grows with
+    /// what is borne grows with it.
+    #[must_use]
+    pub fn borne(&self, row: usize) -> f64 {
+        self.force[row] + self.load[row]
     }
 
     /// Whether they are the same under `one` and `other`: actuator, force sensor and the load's factor are.
@@ -38,13 +47,12 @@ impl Inputs {
                 law.effort_delay_s,
                 law.effort_averaging,
                 law.effort_lag_s,
-                law.effort_limit,
                 law.load_scale,
                 law.force_gain_error,
                 law.force_delay_s,
             ]
         };
-        of(one) == of(other)
+        of(one) == of(other) && one.limit == other.limit
     }
 
     /// The inputs of `trial` under the actuator and the force sensor of `law`.
@@ -52,16 +60,20 @@ impl Inputs {
     pub fn of(trial: &DriveTrial, law: &DriveLaw) -> Self {
         let acting =
             unaveraged(&trial.source_time, &trial.effort, law.effort_averaging * trial.recorded_period_s.powi(2));
-        let clipped = acting.iter().map(|effort| effort.clamp(-law.effort_limit, law.effort_limit));
-        let held = Integral::held(&trial.source_time, clipped);
+        let limited = acting.iter().map(|effort| law.limit.passed(*effort));
+        let held = Integral::held(&trial.source_time, limited);
         let mut effort = held.means(&trial.time, -law.effort_delay_s);
         if law.effort_lag_s > 0.0 {
             held.lag(&mut effort, &trial.time, -law.effort_delay_s, law.effort_lag_s);
         }
-        if let Some(load) = &trial.load {
-            let load = Integral::sampled(&trial.source_time, load.iter().map(|load| law.load_scale * load));
-            effort.iter_mut().zip(load.means(&trial.time, 0.0)).for_each(|(effort, load)| *effort -= load);
-        }
+        let load = trial.load.as_ref().map_or_else(
+            || vec![0.0; trial.len()],
+            |load| {
+                let scaled = load.iter().map(|load| law.load_scale * load);
+                Integral::sampled(&trial.source_time, scaled).means(&trial.time, 0.0)
+            },
+        );
+        effort.iter_mut().zip(&load).for_each(|(effort, load)| *effort -= load);
         let force = trial.force.as_ref().map_or_else(
             || vec![0.0; trial.len()],
             |force| {
@@ -70,7 +82,7 @@ impl Inputs {
                 sampled.means(&trial.time, law.force_delay_s)
             },
         );
-        Self { effort, force }
+        Self { effort, force, load }
     }
 }
 

@@ -1,4 +1,4 @@
-//! 95 % intervals of a fitted drive: from the curvature of the likelihood, and from leaving out stretches of the recordings.
+//! 95 % intervals of a fitted drive: from the curvature of likelihood and prior, and from leaving out stretches of the recordings.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,7 +6,7 @@ use super::fit::Fit;
 use super::likelihood::Data;
 use super::linearisation::Linearisation;
 use super::outcome::Outcome;
-use super::range::Step;
+use super::range::{Range, Step};
 use crate::diagnose::interval::{Clusters, NORMAL_97_5, spread_over_own_width};
 use crate::diagnose::jackknife::stretch_of_rows;
 use crate::diagnose::linalg::dot;
@@ -33,7 +33,11 @@ pub fn intervals(data: &Data<'_>, fit: &Fit) -> Uncertainty {
     let stretch = stretch_of_rows(&counts);
     let rows = Clusters { stretch: &stretch, place: &[], rounding: &[] };
     let at = Linearisation::of(data, &fit.model, &fit.values, &fit.noise);
-    let found = spread_over_own_width(ranges.len(), rows, |apart| at.over_width(&fit.values, apart));
+    let known = |(range, value): (&Range, &f64)| {
+        range.prior.map_or(0.0, |prior| (range.slope(*value) / prior.deviation).powi(2))
+    };
+    let priors: Vec<f64> = ranges.iter().zip(&fit.values).map(known).collect();
+    let found = spread_over_own_width(&priors, rows, |apart| at.over_width(&fit.values, apart));
     let each = fit.values.iter().enumerate().map(|(at, value)| {
         let range = &ranges[at];
         let steps = found.half_widths[at].hypot(found.remaining[at]);

@@ -10,6 +10,7 @@ use super::lack_of_fit::{a_shape_does_better, has_a_shape};
 use super::model::index;
 use super::noise_at_rest::noise_at_rest;
 use super::outcome::Outcome;
+use super::ripples::as_one_cogging;
 use super::selection::{Chosen, Search};
 use super::term::Term;
 use super::validation::{Validated, validated};
@@ -27,7 +28,10 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     );
     let given = missing_forces(data, &as_given(search), &common);
     let refitted = folds.held_out(data, &search.nominal, &common);
-    let stands = validated(search, &folds, &common, chosen.fit.clone());
+    let mut stands = validated(search, &folds, &common, chosen.fit.clone());
+    if let Some(one) = as_one_cogging(&stands.fit, search.nominal.model.terms.len()) {
+        stands = validated(search, &folds, &common, one);
+    }
     let mut alternatives = alternatives(search, &folds, &common, &stands.fit, &chosen, &refitted);
     let one = as_asymmetric(&stands.fit, search.nominal.model.terms.len())
         .map(|one| validated(search, &folds, &common, one))

@@ -7,6 +7,7 @@ pub use crate::rig::TransmissionSide as Side;
 use super::course::Course;
 use super::curve::Curve;
 use super::dry_friction::DryFriction;
+use super::effort_limit::EffortLimit;
 use super::presliding::{Slips, Step};
 
 /// What lies between motor and load.
@@ -59,8 +60,8 @@ impl Periodic {
 pub struct Acting {
     /// Everything that does not depend on the motion, N or N m.
     pub push: f64,
-    /// What the contact bears, N or N m.
-    pub force: f64,
+    /// What is borne, N or N m: friction can grow with it.
+    pub borne: f64,
     /// What dry friction is multiplied by.
     pub friction_factor: f64,
     /// What viscous friction is multiplied by.
@@ -81,8 +82,8 @@ pub struct DriveLaw {
     pub effort_averaging: f64,
     /// First-order lag of the effort, s.
     pub effort_lag_s: f64,
-    /// Greatest effort either way, N or N m.
-    pub effort_limit: f64,
+    /// How the effort ends.
+    pub limit: EffortLimit,
     /// What the given load is multiplied by.
     pub load_scale: f64,
     /// Dry friction, on the motor's side.
@@ -118,7 +119,7 @@ impl DriveLaw {
             effort_delay_s,
             effort_averaging: 0.0,
             effort_lag_s: 0.0,
-            effort_limit: f64::INFINITY,
+            limit: EffortLimit::None,
             load_scale: 1.0,
             friction: DryFriction::NONE,
             course: Course::default(),
@@ -144,7 +145,7 @@ impl DriveLaw {
     #[must_use]
     pub fn advance(&self, state: [f64; 2], slips: &mut Slips, acting: &Acting, inertia: f64, step: f64) -> [f64; 2] {
         let [mut position, mut velocity] = state;
-        let Acting { push, force, friction_factor, viscous_factor } = *acting;
+        let Acting { push, borne, friction_factor, viscous_factor } = *acting;
         let viscous = viscous_factor * self.viscous;
         let push = push - self.load(position + 0.5 * step * velocity);
         if !self.friction.acts() {
@@ -153,12 +154,12 @@ impl DriveLaw {
             return [position + 0.5 * step * (velocity + after), after];
         }
         if self.friction.presliding > 0.0 {
-            let level = friction_factor * self.friction.level(velocity.abs(), force);
+            let level = friction_factor * self.friction.level(velocity.abs(), borne);
             let step = Step { velocity, push, viscous, inertia, duration: step };
             let [way, after] = slips.advance(level, self.friction.presliding, &step);
             return [position + way, after];
         }
-        let level = |speed: f64| friction_factor * self.friction.level(speed, force);
+        let level = |speed: f64| friction_factor * self.friction.level(speed, borne);
         let mut left = step;
         for _ in 0..TURNS_PER_ROW {
             let Some(direction) = Self::direction(velocity, push, level(0.0)) else { return [position, 0.0] };
@@ -203,7 +204,7 @@ mod tests {
     }
 
     fn pushed(push: f64) -> Acting {
-        Acting { push, force: 0.0, friction_factor: 1.0, viscous_factor: 1.0 }
+        Acting { push, borne: 0.0, friction_factor: 1.0, viscous_factor: 1.0 }
     }
 
     #[test]

@@ -20,7 +20,7 @@ use super::trial::DriveTrial;
 const STRETCH_ROWS: usize = 5000;
 
 /// Frequencies of the link under all of the inertia that are tried, Hz; only those that the rows can follow.
-const COMPLIANCE_HZ: [f64; 3] = [6.0, 15.0, 40.0];
+const COMPLIANCE_HZ: [f64; 5] = [6.0, 15.0, 40.0, 100.0, 250.0];
 const PLAY_HZ: [f64; 3] = [25.0, 60.0, 150.0];
 const FASTEST_PER_ROW: f64 = 0.3;
 
@@ -55,19 +55,25 @@ const FOLLOWED: usize = 4;
 const TURNS: usize = 4;
 const STEPS: usize = 6;
 
-/// The best weak link and the best play beside the terms of `base`, still to be fitted in full.
+/// The best weak link and the best play of each of `sides` beside the terms of `base`, still to be fitted in full: on a stretch the one side can be
+/// likelier, and on all rows the other.
 #[must_use]
 pub fn found(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>], sides: &[Side]) -> Vec<Fit> {
     let trials = [liveliest(data, disturbance)];
     let short = Data { trials: &trials, ..*data };
-    let begun = led(&short, starts(&short, base, sides));
-    let mut fits: Vec<Fit> = begun.into_par_iter().map(|start| turn(&short, start)).collect();
+    sides.iter().flat_map(|side| found_on(&short, base, *side)).collect()
+}
+
+/// Those whose encoder is on `side`, on the stretch of `data`.
+fn found_on(data: &Data<'_>, base: &Fit, side: Side) -> Vec<Fit> {
+    let begun = led(data, starts(data, base, side));
+    let mut fits: Vec<Fit> = begun.into_par_iter().map(|start| turn(data, start)).collect();
     fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     fits.truncate(2 * FOLLOWED);
     let followed = |mut fit: Fit| {
         for _ in 1..TURNS {
             let before = fit.log_likelihood;
-            fit = turn(&short, fit);
+            fit = turn(data, fit);
             if fit.log_likelihood - before < 1.0 {
                 break;
             }
@@ -165,25 +171,22 @@ pub fn likelier_around(data: &Data<'_>, play: &Fit) -> Fit {
     best
 }
 
-/// Every link and play to begin with.
-fn starts(data: &Data<'_>, base: &Fit, sides: &[Side]) -> Vec<Fit> {
+/// Every link and play to begin with, with the encoder on `side`.
+fn starts(data: &Data<'_>, base: &Fit, side: Side) -> Vec<Fit> {
     let scales: &Scales = &base.model.scales;
     let is_slow_enough = |hz: f64| hz * scales.period_s < FASTEST_PER_ROW;
     let mut all = Vec::new();
-    for side in sides {
-        for hz in COMPLIANCE_HZ.into_iter().filter(|hz| is_slow_enough(*hz)) {
-            let own = link(base, hz, COMPLIANCE_DAMPING).to_vec();
-            all.push(begun(base, Term::Compliance(*side), own.clone(), 1.0));
-            all.push(begun(base, Term::Compliance(*side), own, QUIET));
-        }
-        let flanks: Vec<f64> = PLAY_HZ.into_iter().filter(|hz| is_slow_enough(*hz)).collect();
-        if !flanks.is_empty() {
-            let gaps: Vec<f64> = gaps(scales).collect();
-            for (density, friction_share) in PLAY_STARTS {
-                let likeliest =
-                    |band: &[f64]| likeliest_play(data, base, *side, &flanks, band, density, friction_share);
-                all.extend(gaps.par_chunks(GAPS_OF_BAND).filter_map(likeliest).collect::<Vec<_>>());
-            }
+    for hz in COMPLIANCE_HZ.into_iter().filter(|hz| is_slow_enough(*hz)) {
+        let own = link(base, hz, COMPLIANCE_DAMPING).to_vec();
+        all.push(begun(base, Term::Compliance(side), own.clone(), 1.0));
+        all.push(begun(base, Term::Compliance(side), own, QUIET));
+    }
+    let flanks: Vec<f64> = PLAY_HZ.into_iter().filter(|hz| is_slow_enough(*hz)).collect();
+    if !flanks.is_empty() {
+        let gaps: Vec<f64> = gaps(scales).collect();
+        for (density, friction_share) in PLAY_STARTS {
+            let likeliest = |band: &[f64]| likeliest_play(data, base, side, &flanks, band, density, friction_share);
+            all.extend(gaps.par_chunks(GAPS_OF_BAND).filter_map(likeliest).collect::<Vec<_>>());
         }
     }
     all

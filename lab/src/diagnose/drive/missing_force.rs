@@ -36,16 +36,11 @@ mod tests {
         let own = Noise { ln_disturbance: (1e-12f64).ln(), ln_encoder: drive.encoder.powi(2).ln() };
         let common = own.with_crossing(20.0, 1e-3, 0.8);
         let rigid = DriveLaw::nominal(0.8, 4.0, 0.0);
-        let link = Link {
-            stiffness: 4e5,
-            damping: 200.0,
-            play: 0.0,
-            load_share: 0.4,
-            load_viscous: 0.0,
-            encoder: Side::Motor,
+        let seen_from = |encoder: Side| {
+            let link = Link { stiffness: 4e5, damping: 200.0, play: 0.0, load_share: 0.4, load_viscous: 0.0, encoder };
+            DriveLaw { link: Some(link), ..rigid.clone() }
         };
-        let linked = DriveLaw { link: Some(link), ..rigid.clone() };
-        for law in [rigid, linked] {
+        for law in [rigid.clone(), seen_from(Side::Motor), seen_from(Side::Load)] {
             let missing = missing_force(&trial, &law, &own, &common);
             let inner = &missing[500..3500];
             let mean = inner.iter().sum::<f64>() / inner.len() as f64;

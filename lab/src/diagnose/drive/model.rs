@@ -136,11 +136,12 @@ impl Model {
         self.terms.iter().filter(|term| term.is_told()).count()
     }
 
-    /// The names of its terms that are told as physics, sorted: the same for sets of terms that are told alike.
+    /// The names of its terms that are told as physics, sorted, each once: the same for sets of terms that are told alike.
     #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
         let mut names: Vec<&'static str> = self.terms.iter().filter(|term| term.is_told()).map(Term::name).collect();
         names.sort_unstable();
+        names.dedup();
         names
     }
 

@@ -109,7 +109,7 @@ pub fn one_body(
             let factor = |of| law.course.factor(of, trial.time[row] - trial.time[0], state[0]);
             let acting = Acting {
                 push: factor(Varying::Effort) * inputs.effort[row] - force,
-                force,
+                borne: inputs.borne(row),
                 friction_factor: factor(Varying::DryFriction),
                 viscous_factor: factor(Varying::ViscousFriction),
             };

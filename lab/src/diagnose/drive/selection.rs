@@ -8,6 +8,7 @@ use super::law::Side;
 use super::likelihood::Data;
 use super::links;
 use super::model::index;
+use super::ripples::are_resolved;
 use super::scales::Scales;
 use super::term::Term;
 use crate::diagnose::so_far::so_far;
@@ -88,7 +89,7 @@ impl Search<'_> {
                 let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
                 grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest), rigid)));
             }
-            grown.retain(|fit| !is_at_end(fit) && !hurries(fit, &self.nominal));
+            grown.retain(|fit| !is_at_end(fit) && !hurries(fit, &self.nominal) && are_resolved(fit));
             let grown = distinct(grown);
             sets.extend(grown.iter().cloned());
             let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE.value() * fit.values.len() as f64;

@@ -2,10 +2,11 @@
 
 use super::course::{Along, Course, Varying};
 use super::criteria::{
-    LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LOAD_SHARE_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT,
-    MOST_LOAD_SHARE, SLOWEST_SWING,
+    GENTLEST_LIMIT, LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LOAD_SHARE_DEVIATION, LONGEST_PRESLIDING,
+    MOST_EXPONENT, MOST_LOAD_SHARE, SLOWEST_SWING,
 };
 use super::curve::Curve;
+use super::effort_limit::EffortLimit;
 use super::law::{DriveLaw, Link, Periodic, Side};
 use super::range::{Prior, Range};
 use super::scales::Scales;
@@ -23,7 +24,7 @@ pub enum Term {
     Sublinear,
     /// The way over which dry friction builds up: no effect of its own, but a part of every dry friction.
     Presliding,
-    /// Friction in proportion to the contact force.
+    /// Friction in proportion to what is borne.
     LoadFriction,
     /// A constant load.
     ConstantLoad,
@@ -31,8 +32,12 @@ pub enum Term {
     AngleLoad,
     /// A load that repeats along the way many times.
     Cogging,
+    /// Two such loads, as those of a magnet's pitch and of a slot's, or a wave and one of its harmonics.
+    TwoRipples,
     /// Effort that ends at a limit.
     EffortLimit,
+    /// Effort that nears a limit, as of iron that saturates.
+    SmoothLimit,
     /// Effort that follows its command by a first-order lag.
     EffortLag,
     /// A spring and damper between motor and load; the encoder sits on one side.
@@ -94,8 +99,8 @@ impl Term {
             Self::Presliding => "presliding",
             Self::LoadFriction => "load_dependent_friction",
             Self::ConstantLoad | Self::AngleLoad => "gravity_load",
-            Self::Cogging => "cogging",
-            Self::EffortLimit => "effort_saturation",
+            Self::Cogging | Self::TwoRipples => "cogging",
+            Self::EffortLimit | Self::SmoothLimit => "effort_saturation",
             Self::EffortLag => "effort_lag",
             Self::Compliance(_) => "transmission_compliance",
             Self::Play(_) => "backlash",
@@ -145,7 +150,10 @@ impl Term {
         let fastest = 4.0 / scales.period_s;
         let stiffness = Range::relative(scales.inertia * swing * swing, scales.inertia * fastest * fastest);
         let damping = Range::relative(1e-2 * scales.inertia / scales.duration_s, scales.inertia / scales.period_s);
-        let friction_share = Range::absolute(0.0, 1.0, 0.1);
+        let friction_share = |side: Side| {
+            let most = 1.0 / OfHalves::new(side, LEAST_LOAD_SHARE.value()).friction;
+            Range::absolute(0.0, most, 0.1)
+        };
         match self {
             Self::Coulomb => vec![positive],
             Self::AsymmetricCoulomb => vec![positive, positive],
@@ -169,14 +177,18 @@ impl Term {
                 let turn = if scales.is_rotary { LONGEST_PITCH_RAD } else { f64::INFINITY };
                 vec![any, any, Range::relative(wavenumber((0.5 * scales.travel).min(turn)), wavenumber(finest))]
             }
+            Self::TwoRipples => [Self::Cogging.ranges(scales), Self::Cogging.ranges(scales)].concat(),
             Self::EffortLimit => {
                 vec![Range::absolute(0.2 * scales.effort, scales.peak_effort, 0.02 * scales.effort)]
             }
+            Self::SmoothLimit => {
+                vec![Range::relative(0.2 * scales.effort, (GENTLEST_LIMIT * scales.peak_effort).value())]
+            }
             Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
-            Self::Compliance(side) => vec![stiffness, damping, share_of_load(*side), friction_share],
+            Self::Compliance(side) => vec![stiffness, damping, share_of_load(*side), friction_share(*side)],
             Self::Play(side) => {
                 let play = Range::relative(0.05 * scales.resolution, 0.2 * scales.travel);
-                vec![stiffness, damping, share_of_load(*side), play, friction_share]
+                vec![stiffness, damping, share_of_load(*side), play, friction_share(*side)]
             }
             Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],
             Self::ForceDelay => vec![Range::absolute(-2.0 * scales.period_s, 0.05, scales.period_s)],
@@ -217,6 +229,7 @@ impl Term {
         match self {
             Self::Coulomb
             | Self::EffortLag
+            | Self::SmoothLimit
             | Self::LoadFriction
             | Self::ForceGain
             | Self::ForceDelay
@@ -227,10 +240,12 @@ impl Term {
             Self::Stribeck => &[0, 1, 2],
             Self::AsymmetricCoulomb | Self::Sublinear => &[0, 1],
             Self::Cogging => &[2],
-            // Seen from the load alone, one share of the inertia is as good as another (see [`share_of_load`]).
+            Self::TwoRipples => &[2, 5],
+            // Seen from the load alone, one share of the inertia is as good as another (see [`OfHalves`]).
             Self::Compliance(Side::Load) => &[0],
             Self::Compliance(Side::Motor) => &[0, 2],
-            Self::Play(_) => &[2, 3],
+            Self::Play(Side::Load) => &[3],
+            Self::Play(Side::Motor) => &[2, 3],
             _ => &[],
         }
     }
@@ -238,7 +253,8 @@ impl Term {
     /// Whether a value of it sets its shape, beside its size.
     #[must_use]
     pub const fn has_free_shape(&self, scales: &Scales) -> bool {
-        matches!(self, Self::Cogging | Self::Sublinear) || (matches!(self, Self::AngleLoad) && !scales.is_rotary)
+        matches!(self, Self::Cogging | Self::TwoRipples | Self::Sublinear)
+            || (matches!(self, Self::AngleLoad) && !scales.is_rotary)
     }
 
     /// Puts it into `law` with `values`.
@@ -269,20 +285,25 @@ impl Term {
             Self::AngleLoad | Self::Cogging => {
                 law.periodic.push(Periodic { sine: values[0], cosine: values[1], wavenumber: values[2] });
             }
-            Self::EffortLimit => law.effort_limit = values[0],
+            Self::TwoRipples => {
+                values.chunks_exact(3).for_each(|one| Self::Cogging.apply(one, scales, law));
+            }
+            Self::EffortLimit => law.limit = EffortLimit::Sharp(values[0]),
+            Self::SmoothLimit => law.limit = EffortLimit::Smooth(values[0]),
             Self::EffortLag => law.effort_lag_s = values[0],
             Self::Compliance(encoder) | Self::Play(encoder) => {
                 let (play, friction_share) = match self {
                     Self::Play(_) => (values[3], values[4]),
                     _ => (0.0, values[3]),
                 };
-                let load_viscous = friction_share * law.viscous;
+                let of_halves = OfHalves::new(*encoder, values[2]);
+                let load_viscous = (of_halves.friction * friction_share).min(1.0) * law.viscous;
                 law.viscous -= load_viscous;
                 law.link = Some(Link {
-                    stiffness: values[0],
-                    damping: values[1],
+                    stiffness: of_halves.stiffness * values[0],
+                    damping: of_halves.stiffness * values[1],
                     load_share: values[2],
-                    play,
+                    play: of_halves.play * play,
                     load_viscous,
                     encoder: *encoder,
                 });
@@ -302,12 +323,42 @@ impl Term {
     }
 }
 
+/// What the values of a link are to be multiplied by, one whose encoder sits on the load: they are those of two halves that move the load
+/// alike.
+///
+/// From the effort to the load's position a link is (c s + k) / (m1 m2 s^4 + (m1 + m2) (c s + k) s^2): without the motor's position the motion tells
+/// the sum of the inertias, and stiffness and damping over their product. And a motor that nobody sees crosses a play in the time that its
+/// inertia times the gap takes, while the load slows down by its friction over its inertia. So none of them is told without the share, and with these values the share is left as a direction of its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OfHalves {
+    /// Of stiffness and damping.
+    pub stiffness: f64,
+    /// Of the gap.
+    pub play: f64,
+    /// Of the load's share of the viscous friction.
+    pub friction: f64,
+}
+
+impl OfHalves {
+    /// For a load of `load_share` of the inertia; one where the encoder is on the motor.
+    #[must_use]
+    pub fn new(encoder: Side, load_share: f64) -> Self {
+        match encoder {
+            Side::Motor => Self { stiffness: 1.0, play: 1.0, friction: 1.0 },
+            Side::Load => Self {
+                stiffness: 4.0 * load_share * (1.0 - load_share),
+                play: 0.5 / (1.0 - load_share),
+                friction: 2.0 * load_share,
+            },
+        }
+    }
+}
+
 /// Range of the load's share of the inertia, of a link whose encoder sits on `side`.
 ///
-/// From the effort to the load's position the link is (c s + k) / (m1 m2 s^4 + (m1 + m2) (c s + k) s^2): without the motor's position the motion tells
-/// the sum of the inertias and their product over the stiffness, and not the share. It is taken to be about half
-/// of it then, as where both are matched for the greatest acceleration.
-fn share_of_load(side: Side) -> Range {
+/// Seen from the load (see [`OfHalves`]) it is taken to be about half of it, as where both are matched for the greatest acceleration.
+#[must_use]
+pub fn share_of_load(side: Side) -> Range {
     let share = Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1);
     match side {
         Side::Motor => share,

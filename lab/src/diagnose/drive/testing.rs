@@ -56,8 +56,14 @@ pub struct TestDrive {
     pub root: f64,
     /// N, ripple along the way, at a pitch of 5 mm.
     pub ripple: f64,
+    /// N, the same at a third of that pitch.
+    pub third_ripple: f64,
     /// N, constant load.
     pub load: f64,
+    /// Share of the [`known_load`] that rubs, either way.
+    pub geared: f64,
+    /// N, what the effort nears, by a hyperbolic tangent; infinite: it is as commanded.
+    pub iron: f64,
     /// N, a force at 7.3 Hz, whatever the drive does.
     pub tone: f64,
     /// Share of the viscous friction by which it is more at the start of a trial, and less and less from there, within 2 s.
@@ -78,8 +84,10 @@ pub struct TestDrive {
     pub is_averaged: bool,
     /// Whether it stands still for the second half of a trial.
     pub rests: bool,
-    /// What gives between motor, where the encoder is, and load.
+    /// What gives between motor and load.
     pub link: Option<TestLink>,
+    /// Whether the encoder is on the load beyond that.
+    pub sees_load: bool,
 }
 
 /// A spring and damper with play between motor and load.
@@ -106,7 +114,10 @@ impl TestDrive {
         presliding: 0.0,
         root: 0.0,
         ripple: 0.0,
+        third_ripple: 0.0,
         load: 0.0,
+        geared: 0.0,
+        iron: f64::INFINITY,
         tone: 0.0,
         cold: 0.0,
         disturbance: 0.0,
@@ -118,6 +129,7 @@ impl TestDrive {
         is_averaged: false,
         rests: false,
         link: None,
+        sees_load: false,
     };
 
     /// `seconds` at 1 kHz along three sines, drawn from `seed`.
@@ -142,8 +154,10 @@ impl TestDrive {
             let t = row as f64 * period;
             let rate = (reference(t) - reference(t - period)) / period;
             let u = 900.0 * (reference(t) - x) + 38.0 * (rate - v);
+            let rubbed = self.coulomb + self.geared * known_load(t, seed).abs();
             time.push(t);
-            position.push(x + self.encoder * normal());
+            let seen = if self.sees_load { load_x } else { x };
+            position.push(seen + self.encoder * normal());
             let before = command;
             command = u;
             let shown = if self.is_averaged { 0.5 * (before + u) } else { u };
@@ -158,6 +172,7 @@ impl TestDrive {
                 } else {
                     acts
                 };
+                let given = if self.iron.is_finite() { self.iron * (drives / self.iron).tanh() } else { drives };
                 let white = (self.disturbance / step).sqrt() * normal();
                 let (passed, motor) = self.link.map_or((0.0, self.mass), |link| {
                     let apart = x - load_x;
@@ -173,22 +188,29 @@ impl TestDrive {
                 let tone = self.tone * (std::f64::consts::TAU * 7.3 * t + seed as f64).sin();
                 let viscous = self.viscous * (1.0 + self.cold * (-0.5 * t).exp());
                 let root = self.root * v.signum() * (v.abs() / 0.1).sqrt();
-                let ripple = self.ripple * (std::f64::consts::TAU * x / 5e-3).sin();
+                let wave = |size: f64, pitch: f64| size * (std::f64::consts::TAU * x / pitch).sin();
+                let ripple = wave(self.ripple, 5e-3) + wave(self.third_ripple, 5e-3 / 3.0);
                 let dry = root + bristle;
                 let free = v + step
-                    * (drives - passed - dry - ripple - (viscous - on_load) * v - self.load + tone + white)
+                    * (given - passed - dry - ripple - (viscous - on_load) * v - self.load + tone + white)
                     / motor;
-                let at_once = if self.presliding > 0.0 { 0.0 } else { self.coulomb };
+                let at_once = if self.presliding > 0.0 { 0.0 } else { rubbed };
                 let held = step * at_once / motor;
                 v = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
                 if self.presliding > 0.0 {
-                    bristle += step * (self.coulomb * v - bristle * v.abs()) / self.presliding;
+                    bristle += step * (rubbed * v - bristle * v.abs()) / self.presliding;
                 }
                 x += step * v;
             }
         }
         DriveTrial::new(format!("trial-{seed}.csv"), time, &position, effort, None, 1)
     }
+}
+
+/// What a rigid-body model explains of the effort of trial `seed`, N.
+#[must_use]
+pub fn known_load(time: f64, seed: u64) -> f64 {
+    2.0 * (3.0 * time + seed as f64).sin()
 }
 
 /// A search over `trials` of a drive that the rig file knows rightly, its nominal law fitted.

@@ -11,7 +11,7 @@ use super::noise::Noise;
 use super::presliding::Slips;
 use super::trial::DriveTrial;
 use super::two_body_smoother::{PairRow, of_stretch, smoothed_pair};
-use super::two_mass_motion::advance_pair;
+use super::two_mass_motion::{Pushes, advance_pair};
 use super::two_mass_system::{Pair, STATES};
 
 /// Parts of a period by which two steps count as alike, and share a pair: a clock that jitters has as many steps as rows, and a pair costs as
@@ -19,8 +19,9 @@ use super::two_mass_system::{Pair, STATES};
 /// their impulse, and by the way at the speed that was reached.
 const GRAINS: f64 = 256.0;
 
-/// Share of the disturbance's density that acts on the load: without any the filter would trust its load for ever.
-const LOAD_DENSITY_SHARE: f64 = 1e-4;
+/// Share of the disturbance's density that acts on the side that the encoder does not see: without any the filter would trust it for ever. All of
+/// it acts on the other: in a play nothing else can move that, and a strike that comes some rows early or late would cost what hundreds of rows tell.
+const HIDDEN_DENSITY_SHARE: f64 = 1e-4;
 
 /// What is not known of the pair along a trial.
 #[derive(Clone, Copy, Default)]
@@ -80,7 +81,7 @@ pub fn two_bodies(
         velocity: vec![0.0; rows],
         ..Innovations::default()
     };
-    let densities = [noise.disturbance(), LOAD_DENSITY_SHARE * noise.disturbance() + trial.force_density];
+    let densities = densities(noise, link.encoder, trial.force_density);
     let mut pairs = Pairs::default();
     let mut history: Vec<PairRow> = Vec::with_capacity(if smooth { rows } else { 0 });
     let (mut state, mut slips) = ([0.0; STATES], Slips::default());
@@ -103,8 +104,9 @@ pub fn two_bodies(
         let step = trial.time[row] - trial.time[row - 1];
         let at = pairs.of(step, trial.period_s / GRAINS, || Pair::new(law, &link, densities, step));
         let pair = &pairs.all[at];
-        let input = [inputs.effort[row], inputs.force[row]].map(|force| force * step / pair.step);
-        let coupled = advance_pair(law, &link, &mut state, &mut slips, input, pair);
+        let [effort, force, borne] =
+            [inputs.effort[row], inputs.force[row], inputs.borne(row)].map(|force| force * step / pair.step);
+        let coupled = advance_pair(law, &link, &mut state, &mut slips, Pushes { effort, force, borne }, pair);
         let late = step - pair.step;
         state = [state[0] + late * state[1], state[1], state[2] + late * state[3], state[3]];
         let regime = usize::from(coupled);
@@ -123,6 +125,15 @@ pub fn two_bodies(
         [out.disturbance, out.residual, out.stretch] = smoothed_pair(trial, &link, noise, &out, &history, &pairs.all);
     }
     out
+}
+
+/// Densities of what disturbs motor and load, of which the encoder sees one `side`; the load feels the noise of the force sensor, too.
+fn densities(noise: &Noise, side: Side, of_force: f64) -> [f64; 2] {
+    let (seen, hidden) = (noise.disturbance(), HIDDEN_DENSITY_SHARE * noise.disturbance());
+    match side {
+        Side::Motor => [seen, hidden + of_force],
+        Side::Load => [hidden, seen + of_force],
+    }
 }
 
 /// The pairs of a trial, one for all steps that are alike.
@@ -219,8 +230,7 @@ mod tests {
         let time: Vec<f64> = (0..6000).map(|row| 1e-3 * f64::from(row)).collect();
         let trial = DriveTrial::new("still.csv".to_owned(), time.clone(), &vec![0.0; 6000], vec![0.0; 6000], None, 1);
         let pass = two_bodies(&trial, &Inputs::of(&trial, &law), &law, link, &noise, false);
-        let densities = [noise.disturbance(), LOAD_DENSITY_SHARE * noise.disturbance()];
-        let pair = Pair::new(&law, &link, densities, 1e-3);
+        let pair = Pair::new(&law, &link, densities(&noise, Side::Motor, 0.0), 1e-3);
         let mut covariance = identity::<STATES>();
         for _ in 0..100_000 {
             covariance = propagated(&pair.transition[1], &covariance, &pair.driving[1]);

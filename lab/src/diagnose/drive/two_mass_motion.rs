@@ -4,6 +4,17 @@ use super::law::{Acting, DriveLaw, Link};
 use super::presliding::Slips;
 use super::two_mass_system::{Pair, STATES, masses};
 
+/// What pushes the pair through a row, N or N m.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Pushes {
+    /// On the motor, less the load that is known.
+    pub effort: f64,
+    /// Of the load on what it touches.
+    pub force: f64,
+    /// What is borne: friction can grow with it.
+    pub borne: f64,
+}
+
 /// The pair after a row over which it stays coupled and its motor goes one way, exactly but for loads and friction, which are those in the middle;
 /// `None` where it does not.
 #[must_use]
@@ -11,7 +22,7 @@ pub fn after_coupled_row(
     law: &DriveLaw,
     link: &Link,
     state: &[f64; STATES],
-    [effort, force]: [f64; 2],
+    Pushes { effort, force, borne }: Pushes,
     pair: &Pair,
 ) -> Option<[f64; STATES]> {
     let side = |state: &[f64; STATES]| {
@@ -24,7 +35,7 @@ pub fn after_coupled_row(
     }
     let from_play = flank * 0.5 * link.play * link.stiffness;
     let under = |position: f64, speed: f64| {
-        let against = if law.friction.acts() { direction * law.friction.level(speed.abs(), force) } else { 0.0 };
+        let against = if law.friction.acts() { direction * law.friction.level(speed.abs(), borne) } else { 0.0 };
         pair.coupled.after(state, [effort - law.load(position) - against + from_play, -force - from_play])
     };
     let goes_on = |after: &[f64; STATES]| {
@@ -44,19 +55,19 @@ pub fn advance_pair(
     link: &Link,
     state: &mut [f64; STATES],
     slips: &mut Slips,
-    input: [f64; 2],
+    pushes: Pushes,
     pair: &Pair,
 ) -> bool {
     if pair.substeps > 1
         && law.friction.presliding == 0.0
-        && let Some(after) = after_coupled_row(law, link, state, input, pair)
+        && let Some(after) = after_coupled_row(law, link, state, pushes, pair)
     {
         *state = after;
         return true;
     }
     let (motor, load) = masses(law, link);
     let short = pair.step / pair.substeps as f64;
-    let [effort, force] = input;
+    let Pushes { effort, force, borne } = pushes;
     let mut coupled = 0;
     for _ in 0..pair.substeps {
         let [x, v, load_x, load_v] = *state;
@@ -73,7 +84,7 @@ pub fn advance_pair(
         let stretch_rate = motor_rate - (mid - braked) / load;
         let passed = link.transmitted(ahead + pair.curving * stretch_rate, middle_v - middle_load_v);
         coupled += usize::from(ahead.abs() >= 0.5 * link.play);
-        let acting = Acting { push: effort - passed, force, friction_factor: 1.0, viscous_factor: 1.0 };
+        let acting = Acting { push: effort - passed, borne, friction_factor: 1.0, viscous_factor: 1.0 };
         let [x, v] = law.advance([x, v], slips, &acting, motor, short);
         let after = load_v + short * (passed - braked) / load;
         *state = [x, v, load_x + 0.5 * short * (load_v + after), after];
@@ -94,7 +105,7 @@ mod tests {
         assert_eq!(pair.substeps, 1);
         let (mut stepped, mut exact) = ([1e-3, 0.0, 0.0, 0.0], [1e-3, 0.0, 0.0, 0.0]);
         for row in 0..500 {
-            advance_pair(&law, &link, &mut stepped, &mut Slips::default(), [0.0; 2], &pair);
+            advance_pair(&law, &link, &mut stepped, &mut Slips::default(), Pushes::default(), &pair);
             exact = pair.transition[1].map(|line| line.iter().zip(&exact).map(|(a, x)| a * x).sum());
             let stretch = |state: [f64; STATES]| state[0] - state[2];
             // By the stretch in the middle of a step alone the angle would be wrong by 0.0012 a row, 0.6 at the end. What is left is
@@ -108,9 +119,10 @@ mod tests {
         let (law, link) = pair_law(12_000.0);
         let pair = Pair::new(&law, &link, [1.0; 2], 1e-3);
         // Pulled from both ends by 3 N.
+        let pulled = Pushes { effort: 3.0, force: 3.0, borne: 3.0 };
         let mut state = [3.0 / 12_000.0, 0.0, 0.0, 0.0];
         for _ in 0..500 {
-            advance_pair(&law, &link, &mut state, &mut Slips::default(), [3.0, 3.0], &pair);
+            advance_pair(&law, &link, &mut state, &mut Slips::default(), pulled, &pair);
         }
         assert!((state[0] - state[2] - 3.0 / 12_000.0).abs() < 1e-12, "{state:?}");
     }
@@ -125,10 +137,11 @@ mod tests {
         let (row, short) = (Pair::new(&law, &link, [1.0; 2], 1e-3), Pair::new(&law, &link, [1.0; 2], 1e-6));
         assert!(row.substeps > 4 && short.substeps == 1);
         let start = [0.61e-3, 0.2, 0.0, 0.19];
-        let at_once = after_coupled_row(&law, &link, &start, [40.0, 5.0], &row).expect("it stays coupled");
+        let pushes = Pushes { effort: 40.0, force: 5.0, borne: 5.0 };
+        let at_once = after_coupled_row(&law, &link, &start, pushes, &row).expect("it stays coupled");
         let mut stepped = start;
         (0..1000).for_each(|_| {
-            advance_pair(&law, &link, &mut stepped, &mut Slips::default(), [40.0, 5.0], &short);
+            advance_pair(&law, &link, &mut stepped, &mut Slips::default(), pushes, &short);
         });
         // The short steps err by the square of their own swing, (1.6e-3)^2 / 24, of what moves within the row: 1e-3 of 0.2 m/s.
         for (state, scale) in [(0, 2e-4), (1, 0.2), (2, 2e-4), (3, 0.2)] {
@@ -142,8 +155,9 @@ mod tests {
         let link = Link { play: 1e-3, ..link };
         let mut law = DriveLaw { link: Some(link), ..law };
         let row = Pair::new(&law, &link, [1.0; 2], 1e-3);
-        let alone =
-            |law: &DriveLaw, state: [f64; STATES]| after_coupled_row(law, &link, &state, [0.0; 2], &row).is_none();
+        let alone = |law: &DriveLaw, state: [f64; STATES]| {
+            after_coupled_row(law, &link, &state, Pushes::default(), &row).is_none()
+        };
         // In the play; leaving it at 2 m/s, four tenths of a millimetre beyond its end.
         assert!(alone(&law, [0.2e-3, 0.1, 0.0, 0.1]) && alone(&law, [0.9e-3, -1.0, 0.0, 1.0]));
         law.friction.coulomb = 5.0;

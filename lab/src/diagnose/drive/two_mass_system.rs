@@ -1,6 +1,6 @@
 //! Two masses on a spring and damper over one step: transition, driving noise and response, coupled and apart.
 
-use super::law::{DriveLaw, Link};
+use super::law::{DriveLaw, Link, Side};
 use super::matrix::{Matrix, exponential, product, propagated};
 
 /// Number of states of two bodies: motor position and velocity, load position and velocity.
@@ -24,7 +24,7 @@ pub struct Pair {
     pub transition: [Matrix<STATES>; 2],
     /// Covariance that the disturbances add over the step.
     pub driving: [Matrix<STATES>; 2],
-    /// State after the step for a constant force of one on the motor.
+    /// State after the step for a constant force of one on the side that the encoder sees.
     pub response: [[f64; STATES]; 2],
     /// The whole step at once.
     pub coupled: Coupled,
@@ -74,6 +74,7 @@ impl Pair {
         let swing = (link.stiffness * (1.0 / motor + 1.0 / load)).sqrt();
         let substeps = (swing * step * SUBSTEPS_PER_RADIAN).ceil().clamp(1.0, MOST_SUBSTEPS) as usize;
         let short = step / substeps as f64;
+        let (pushed, mass) = if link.encoder == Side::Load { (3, load) } else { (1, motor) };
         let regimes = [(0.0, 0.0), (link.stiffness, link.damping)];
         let both = regimes.map(|(stiffness, damping)| {
             let rates = pair_rates(law, link, [stiffness, damping]);
@@ -85,10 +86,10 @@ impl Pair {
             let half = white.map(|row| row.map(|x| 0.5 * short * x));
             let driving = propagated(&once, &half, &half);
             // The same rule for a constant force: half of the velocity that it gives before the substep, half after.
-            let push = |state: [f64; STATES]| -> [f64; STATES] {
-                let start = [state[0], state[1] + 0.5 * short / motor, state[2], state[3]];
-                let mut after: [f64; STATES] = once.map(|row| row.iter().zip(&start).map(|(a, x)| a * x).sum());
-                after[1] += 0.5 * short / motor;
+            let push = |mut state: [f64; STATES]| -> [f64; STATES] {
+                state[pushed] += 0.5 * short / mass;
+                let mut after: [f64; STATES] = once.map(|row| row.iter().zip(&state).map(|(a, x)| a * x).sum());
+                after[pushed] += 0.5 * short / mass;
                 after
             };
             let (mut all, mut sum, mut response) = (once, driving, push([0.0; STATES]));

@@ -120,7 +120,7 @@ fn beside_inertia(outcome: &Outcome, trial: usize) -> Vec<f64> {
     let bare = DriveLaw {
         effort_averaging: whole.effort_averaging,
         effort_lag_s: whole.effort_lag_s,
-        effort_limit: whole.effort_limit,
+        limit: whole.limit,
         load_scale: whole.load_scale,
         force_gain_error: whole.force_gain_error,
         force_delay_s: whole.force_delay_s,

@@ -34,6 +34,24 @@ static SPEC: EffectSpec = EffectSpec {
             equation: "load = sine sin(2 pi position / pitch) + cosine cos(2 pi position / pitch) + second_sine sin(4 pi position / pitch) + second_cosine cos(4 pi position / pitch)",
             parameters: &[part("sine"), part("cosine"), part("second_sine"), part("second_cosine"), PITCH],
         },
+        Form {
+            name: "two_patterns",
+            equation: "load = sine sin(2 pi position / pitch) + cosine cos(2 pi position / pitch) + second_sine sin(2 pi position / second_pitch) + second_cosine cos(2 pi position / second_pitch)",
+            parameters: &[
+                part("sine"),
+                part("cosine"),
+                part("second_sine"),
+                part("second_cosine"),
+                PITCH,
+                Parameter::new(
+                    "second_pitch",
+                    Word::new("m", "rad"),
+                    "way over which the second pattern repeats",
+                    0.0,
+                    f64::INFINITY,
+                ),
+            ],
+        },
     ],
     excited_by: "slow motion over many pitches",
     resembles: &["gravity_load"],
@@ -49,11 +67,15 @@ impl Effect for Cogging {
         Vec::new()
     }
 
-    fn act_on_drive(&self, _form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
-        let Some((pitch, parts)) = values.split_last() else { return };
-        for (at, wave) in parts.chunks_exact(2).enumerate() {
-            let turn = TAU * (at + 1) as f64 / pitch.max(f64::MIN_POSITIVE);
-            let (sine, cosine) = (turn * push.position).sin_cos();
+    fn act_on_drive(&self, form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
+        let pitches = match form {
+            0 => [values[2]; 2],
+            1 => [values[4], 0.5 * values[4]],
+            _ => [values[4], values[5]],
+        };
+        let waves = values.chunks_exact(2).take(if form == 0 { 1 } else { 2 });
+        for (wave, pitch) in waves.zip(pitches) {
+            let (sine, cosine) = (TAU / pitch.max(f64::MIN_POSITIVE) * push.position).sin_cos();
             push.resistance += wave[0] * sine + wave[1] * cosine;
         }
     }

@@ -1,4 +1,4 @@
-//! Friction that grows with what the tool presses.
+//! Friction that grows with what the transmission bears.
 
 use crate::effects::{
     DriveState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
@@ -13,13 +13,13 @@ static SPEC: EffectSpec = EffectSpec {
     place: Place::Drive,
     stage: Stage::Friction,
     max_instances: 1,
-    statement: "The harder the tool presses, the more the drive rubs",
+    statement: "The more the drive bears, the more it rubs",
     forms: &[Form {
         name: "proportional",
-        equation: "friction = load_coefficient |F| sign(v); at rest it holds up to load_coefficient |F|",
-        parameters: &[Parameter::new("load_coefficient", Word::same("1"), "friction over contact force", 0.0, 0.95)],
+        equation: "friction = load_coefficient |F| sign(v); at rest it holds up to load_coefficient |F|; F is the contact force and, where one is given, the load",
+        parameters: &[Parameter::new("load_coefficient", Word::same("1"), "friction over what is borne", 0.0, 0.95)],
     }],
-    excited_by: "reversals of the velocity in contact at two or more forces, beside free ones",
+    excited_by: "reversals of the velocity at two or more contact forces or loads",
     resembles: &["coulomb_friction", "force_gain"],
     source: "gear and guide friction under load, e.g. P. Hamon et al., IEEE IROS 2010, 2501",
 };

@@ -1,0 +1,94 @@
+//! Loads that repeat along the way: when two of them are two, and how they are told as one effect.
+
+use std::f64::consts::TAU;
+
+use super::fit::Fit;
+use super::term::Term;
+
+/// Wavenumbers of the ripples of `fit`, rad/m or periods a turn.
+#[must_use]
+pub fn ripples(fit: &Fit) -> Vec<f64> {
+    let of_term = |at: usize| {
+        let own = &fit.values[fit.model.values_of(at)];
+        match fit.model.terms[at] {
+            Term::Cogging => vec![own[2]],
+            Term::TwoRipples => vec![own[2], own[5]],
+            _ => Vec::new(),
+        }
+    };
+    (0..fit.model.terms.len()).flat_map(of_term).collect()
+}
+
+/// Whether the travel tells every two ripples of `fit` apart: they differ by a period over it, or more (Lord Rayleigh's criterion). Closer ones
+/// beat, and two large ones that nearly cancel stand for any slow course along the way.
+#[must_use]
+pub fn are_resolved(fit: &Fit) -> bool {
+    let all = ripples(fit);
+    let finest = TAU / fit.model.scales.travel;
+    all.iter().enumerate().all(|(at, one)| all[..at].iter().all(|other| (one - other).abs() >= finest))
+}
+
+/// `fit` with its two ripples, each of term `first` or later, as one term, the longer first: one drive has one cogging, of whatever shape.
+/// `None` where it has no two.
+#[must_use]
+pub fn as_one_cogging(fit: &Fit, first: usize) -> Option<Fit> {
+    let mut own = (first..fit.model.terms.len()).filter(|at| fit.model.terms[*at] == Term::Cogging);
+    let (one, other) = (own.next()?, own.next()?);
+    let values = |at: usize| fit.values[fit.model.values_of(at)].to_vec();
+    let mut waves = [values(one), values(other)];
+    waves.sort_by(|a, b| a[2].total_cmp(&b[2]));
+    let mut whole = fit.clone();
+    // The later of the two goes first, so that the earlier keeps its place; nothing builds on a ripple.
+    whole.values.drain(fit.model.values_of(other));
+    whole.model.terms.remove(other);
+    whole.values.splice(fit.model.values_of(one), waves.concat());
+    whole.model.terms[one] = Term::TwoRipples;
+    Some(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::levenberg_marquardt::Ended;
+    use super::super::model::Model;
+    use super::super::noise::Noise;
+    use super::super::testing::SCALES;
+    use super::*;
+
+    fn fit(terms: &[Term], own: &[f64]) -> Fit {
+        Fit {
+            model: Model { terms: terms.to_vec(), scales: SCALES },
+            values: [&[0.8, 4.0, 0.0, 0.0], own].concat(),
+            noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
+            log_likelihood: 7.0,
+            ended: Ended::Converged,
+        }
+    }
+
+    #[test]
+    fn two_ripples_are_one_cogging_of_the_same_load() {
+        let terms = [Term::Cogging, Term::Coulomb, Term::Cogging];
+        let two = fit(&terms, &[0.1, 0.2, 900.0, 0.5, 0.3, -0.1, 300.0]);
+        let one = as_one_cogging(&two, 0).expect("two of them");
+        assert_eq!(one.model.terms, [Term::TwoRipples, Term::Coulomb]);
+        assert_eq!((ripples(&one), one.model.names()), (vec![300.0, 900.0], two.model.names()));
+        let laws = [&one, &two].map(|fit| fit.model.law(&fit.values));
+        for position in [0.0, 1.1e-3, -0.4] {
+            assert!((laws[0].load(position) - laws[1].load(position)).abs() < 1e-15);
+        }
+        assert_eq!(laws[0].friction, laws[1].friction);
+        // What the rig file holds stays as it is, and one is one.
+        assert!(
+            as_one_cogging(&two, 1).is_none() && as_one_cogging(&fit(&terms[1..], &[0.5, 0.3, 0.1, 9.0]), 0).is_none()
+        );
+    }
+
+    #[test]
+    fn ripples_that_beat_once_over_the_travel_are_not_two() {
+        let finest = TAU / SCALES.travel;
+        let apart =
+            |by: f64| are_resolved(&fit(&[Term::Cogging, Term::Cogging], &[1.0, 0.0, 400.0, 1.0, 0.0, 400.0 + by]));
+        assert!(apart(1.01 * finest) && apart(-1.01 * finest) && !apart(0.99 * finest) && !apart(0.0));
+        assert!(are_resolved(&fit(&[Term::Cogging], &[1.0, 0.0, 400.0])));
+        assert!(!are_resolved(&fit(&[Term::TwoRipples], &[1.0, 0.0, 400.0, 1.0, 0.0, 400.0])));
+    }
+}
