@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use super::criteria::{LEAST_LOAD_SHARE, LOAD_SHARE_DEVIATION, MOST_LOAD_SHARE};
 use super::fit::Fit;
 use super::law::Side;
 use super::model::index;
 use super::scales::Scales;
-use super::term::{OfHalves, Term, share_of_load};
+use super::term::{OfHalves, SHARE_OF_SEEN_LOAD, Term};
 use crate::diagnose::interval::NORMAL_97_5;
 use crate::effects::{Effect, Resolved, find};
 
@@ -85,17 +86,17 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     Some(NamedEffect { effect: find(term.name())?, form, values, intervals })
 }
 
-/// Shares of the inertia that a load may have whose share was found between `ends`: where only the load is seen, all that are believed beforehand, too.
-/// There the share is told by how a motor that nobody sees slows down within the play, if at all, and an extended Kalman filter, which knows no instant
-/// of a strike within a row, puts that a thousand nats from the truth (seen in the tests of `identification`: 0.28 for 0.5).
-fn possible_shares(side: Side, [low, high]: [f64; 2]) -> [f64; 2] {
-    let range = share_of_load(side);
-    match range.prior.filter(|_| side == Side::Load) {
-        Some(prior) => {
-            let half = NORMAL_97_5 * prior.deviation;
-            [low.min(prior.mean - half).max(range.low), high.max(prior.mean + half).min(range.high)]
+/// Shares of the inertia that a load may have whose share was found between `ends`: where the load alone is seen, all that are believed beforehand (95 %).
+/// There the share would be told by how a motor that nobody sees slows down within a play, if at all, and an extended Kalman filter, which knows no
+/// instant of a strike within a row, puts its maximum a thousand nats from the truth (0.28 for 0.5 in the tests of `identification`).
+fn possible_shares(side: Side, ends: [f64; 2]) -> [f64; 2] {
+    match side {
+        Side::Motor => ends,
+        Side::Load => {
+            let half = NORMAL_97_5 * LOAD_SHARE_DEVIATION.value();
+            let least = (SHARE_OF_SEEN_LOAD - half).max(LEAST_LOAD_SHARE.value());
+            [least, (SHARE_OF_SEEN_LOAD + half).min(MOST_LOAD_SHARE.value())]
         }
-        None => [low, high],
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::course::{Along, Course, Varying};
 use super::criteria::{
-    GENTLEST_LIMIT, LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LOAD_SHARE_DEVIATION, LONGEST_PRESLIDING,
-    MOST_EXPONENT, MOST_LOAD_SHARE, SLOWEST_SWING,
+    GENTLEST_LIMIT, LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT,
+    MOST_LOAD_SHARE, SLOWEST_SWING,
 };
 use super::curve::Curve;
 use super::effort_limit::EffortLimit;
@@ -328,7 +328,8 @@ impl Term {
 ///
 /// From the effort to the load's position a link is (c s + k) / (m1 m2 s^4 + (m1 + m2) (c s + k) s^2): without the motor's position the motion tells
 /// the sum of the inertias, and stiffness and damping over their product. And a motor that nobody sees crosses a play in the time that its
-/// inertia times the gap takes, while the load slows down by its friction over its inertia. So none of them is told without the share, and with these values the share is left as a direction of its own.
+/// inertia times the gap takes, while the load slows down by its friction over its inertia. None of them is told without the share, which is
+/// held (see [`SHARE_OF_SEEN_LOAD`]); what is told of them has the width of all shares that are believed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfHalves {
     /// Of stiffness and damping.
@@ -354,15 +355,15 @@ impl OfHalves {
     }
 }
 
-/// Range of the load's share of the inertia, of a link whose encoder sits on `side`.
-///
-/// Seen from the load (see [`OfHalves`]) it is taken to be about half of it, as where both are matched for the greatest acceleration.
-#[must_use]
-pub fn share_of_load(side: Side) -> Range {
-    let share = Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1);
+/// Share of the inertia that a load is taken to have where it alone is seen (see [`OfHalves`]): half, as where both sides are matched for the greatest
+/// acceleration.
+pub const SHARE_OF_SEEN_LOAD: f64 = 0.5;
+
+/// Range of the load's share of the inertia, of a link whose encoder sits on `side`; that of a load that alone is seen is held.
+fn share_of_load(side: Side) -> Range {
     match side {
-        Side::Motor => share,
-        Side::Load => share.known(Prior { mean: 0.5, deviation: LOAD_SHARE_DEVIATION.value() }),
+        Side::Motor => Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1),
+        Side::Load => Range::absolute(SHARE_OF_SEEN_LOAD, SHARE_OF_SEEN_LOAD, 0.1),
     }
 }
 
