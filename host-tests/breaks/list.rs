@@ -41,7 +41,7 @@ fn breaks() -> Vec<Break> {
 }
 
 impl Break {
-    /// The source file in which the test stands: that of its module, in the library or below the target's folder.
+    /// The source file in which the test stands: in the library that of its module or of the module's tests, else below the target's folder.
     fn test_file(&self) -> PathBuf {
         let mut module: Vec<&str> = self.test.split("::").collect();
         module.pop();
@@ -51,7 +51,9 @@ impl Break {
         };
         if self.target == "lib" {
             assert_eq!(module.pop(), Some("tests"), "{}", self.test);
-            folder.join("src").join(module.join("/")).with_extension("rs")
+            let of_module = folder.join("src").join(module.join("/"));
+            let of_tests = of_module.join("tests.rs");
+            if of_tests.exists() { of_tests } else { of_module.with_extension("rs") }
         } else {
             folder.join("tests").join(&self.target).join(module.join("/")).with_extension("rs")
         }
