@@ -40,14 +40,14 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     let same = |from: &[usize]| -> Vec<(f64, [f64; 2])> { from.iter().map(|at| (values[*at], ends[*at])).collect() };
     let fixed = |value: f64| (value, [value, value]);
     let pitch = |at: usize| (TAU / values[at], [TAU / ends[at][1], TAU / ends[at][0]]);
-    let motor_share = |side: Side| {
-        let [least, most] = possible_shares(side, ends[2]);
+    let motor_share = || {
+        let [least, most] = possible_shares(term, ends[2]);
         (1.0 - values[2], [1.0 - most, 1.0 - least])
     };
     // A value that is told with the load's share: over all shares that are possible.
     let of_share = |side: Side, factor: fn(OfHalves) -> f64, at: usize| {
         let at_share = |share: f64| factor(OfHalves::new(side, share));
-        let [least, most] = possible_shares(side, ends[2]);
+        let [least, most] = possible_shares(term, ends[2]);
         let all = [least, most, 0.5f64.clamp(least, most)].map(at_share);
         let low = all.into_iter().fold(f64::INFINITY, f64::min);
         let high = all.into_iter().fold(0.0, f64::max);
@@ -74,11 +74,11 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
             let motor = (1.0 - values[2]) * fit.values[index::INERTIA];
             let ratio = |damping: f64| damping / (2.0 * (stiffness.0 * motor).sqrt());
             let damping_ratio = (ratio(damping.0), damping.1.map(ratio));
-            (1, vec![stiffness, motor_share(*side), damping_ratio, friction_share(*side, 3)])
+            (1, vec![stiffness, motor_share(), damping_ratio, friction_share(*side, 3)])
         }
         Term::Play(side) => {
             let (stiffness, gap) = (of_share(*side, |of| of.stiffness, 0), of_share(*side, |of| of.play, 3));
-            (1, vec![gap, motor_share(*side), stiffness, friction_share(*side, 4)])
+            (1, vec![gap, motor_share(), stiffness, friction_share(*side, 4)])
         }
         Term::Presliding | Term::LoadScale | Term::Course { .. } | Term::Curve { .. } => return None,
     };
@@ -86,17 +86,18 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     Some(NamedEffect { effect: find(term.name())?, form, values, intervals })
 }
 
-/// Shares of the inertia that a load may have whose share was found between `ends`: where the load alone is seen, all that are believed beforehand (95 %).
-/// There the share would be told by how a motor that nobody sees slows down within a play, if at all, and an extended Kalman filter, which knows no
+/// Shares of the inertia that a load may have whose share was found between `ends`, by `term`: beyond a play, where the load alone is seen, all that are believed
+/// beforehand (95 %).
+/// There the share would be told by how a motor that nobody sees slows down within the play, if at all, and an extended Kalman filter, which knows no
 /// instant of a strike within a row, puts its maximum a thousand nats from the truth (0.28 for 0.5 in the tests of `identification`).
-fn possible_shares(side: Side, ends: [f64; 2]) -> [f64; 2] {
-    match side {
-        Side::Motor => ends,
-        Side::Load => {
+fn possible_shares(term: &Term, ends: [f64; 2]) -> [f64; 2] {
+    match term {
+        Term::Play(Side::Load) => {
             let half = NORMAL_97_5 * LOAD_SHARE_DEVIATION.value();
             let least = (SHARE_OF_SEEN_LOAD - half).max(LEAST_LOAD_SHARE.value());
             [least, (SHARE_OF_SEEN_LOAD + half).min(MOST_LOAD_SHARE.value())]
         }
+        _ => ends,
     }
 }
 
@@ -174,14 +175,14 @@ mod tests {
                 for (value, given) in told.values.iter().zip(given) {
                     assert!((value / given - 1.0).abs() < 1e-12, "{name} {side:?}: {:?}", told.values);
                 }
-                // The gap goes with 1 / (1 - share), the stiffness with share (1 - share), from the 0.7 that were given: over the shares from 0.2
-                // to 0.5 + 1.96 times 0.2 that are believed where the load alone is seen, whatever was found.
+                // The gap goes with 1 / (1 - share), the stiffness with share (1 - share), from the 0.7 that were given: of a play over the shares
+                // from 0.2 to 0.5 + 1.96 times 0.2 that are believed where the load alone is seen, of a link over those that were found.
                 let most = 0.5 + 0.2 * NORMAL_97_5;
                 let expected = match (side, name) {
                     (Side::Motor, "backlash") => [2e-4, 2e-4],
                     (Side::Load, "backlash") => [2e-4 * 0.3 / 0.8, 2e-4 * 0.3 / (1.0 - most)],
                     (Side::Motor, _) => [4e4, 4e4],
-                    (Side::Load, _) => [4e4 * most * (1.0 - most) / 0.21, 4e4 * 0.25 / 0.21],
+                    (Side::Load, _) => [4e4 * 0.1875 / 0.21, 4e4 * 0.25 / 0.21],
                 };
                 for (end, expected) in told.intervals[0].iter().zip(expected) {
                     assert!((end / expected - 1.0).abs() < 1e-12, "{name} {side:?}: {:?}", told.intervals[0]);

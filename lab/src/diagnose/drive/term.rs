@@ -2,8 +2,8 @@
 
 use super::course::{Along, Course, Varying};
 use super::criteria::{
-    GENTLEST_LIMIT, LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT,
-    MOST_LOAD_SHARE, SLOWEST_SWING,
+    GENTLEST_LIMIT, LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LOAD_SHARE_DEVIATION, LONGEST_PRESLIDING,
+    MOST_EXPONENT, MOST_LOAD_SHARE, SLOWEST_SWING,
 };
 use super::curve::Curve;
 use super::effort_limit::EffortLimit;
@@ -188,7 +188,7 @@ impl Term {
             Self::Compliance(side) => vec![stiffness, damping, share_of_load(*side), friction_share(*side)],
             Self::Play(side) => {
                 let play = Range::relative(0.05 * scales.resolution, 0.2 * scales.travel);
-                vec![stiffness, damping, share_of_load(*side), play, friction_share(*side)]
+                vec![stiffness, damping, share_beyond_play(*side), play, friction_share(*side)]
             }
             Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],
             Self::ForceDelay => vec![Range::absolute(-2.0 * scales.period_s, 0.05, scales.period_s)],
@@ -328,8 +328,8 @@ impl Term {
 ///
 /// From the effort to the load's position a link is (c s + k) / (m1 m2 s^4 + (m1 + m2) (c s + k) s^2): without the motor's position the motion tells
 /// the sum of the inertias, and stiffness and damping over their product. And a motor that nobody sees crosses a play in the time that its
-/// inertia times the gap takes, while the load slows down by its friction over its inertia. None of them is told without the share, which is
-/// held (see [`SHARE_OF_SEEN_LOAD`]); what is told of them has the width of all shares that are believed.
+/// inertia times the gap takes, while the load slows down by its friction over its inertia. None of them is told without the share, and
+/// with these values the share is a direction of its own. What is told of them has the width of all shares that are possible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfHalves {
     /// Of stiffness and damping.
@@ -359,10 +359,20 @@ impl OfHalves {
 /// acceleration.
 pub const SHARE_OF_SEEN_LOAD: f64 = 0.5;
 
-/// Range of the load's share of the inertia, of a link whose encoder sits on `side`; that of a load that alone is seen is held.
+/// Range of the load's share of the inertia, of a link without play whose encoder sits on `side`. Of a load that alone is seen a contact's force or friction can
+/// tell it, and it is believed beforehand.
 fn share_of_load(side: Side) -> Range {
+    let share = Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1);
     match side {
-        Side::Motor => Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1),
+        Side::Motor => share,
+        Side::Load => share.known(Prior { mean: SHARE_OF_SEEN_LOAD, deviation: LOAD_SHARE_DEVIATION.value() }),
+    }
+}
+
+/// The same of a play; that of a load that alone is seen is held (see [`super::named`]).
+fn share_beyond_play(side: Side) -> Range {
+    match side {
+        Side::Motor => share_of_load(side),
         Side::Load => Range::absolute(SHARE_OF_SEEN_LOAD, SHARE_OF_SEEN_LOAD, 0.1),
     }
 }
