@@ -40,6 +40,7 @@ pub mod levenberg_marquardt;
 pub mod likelihood;
 pub mod linearisation;
 pub mod links;
+pub mod load_share;
 pub mod matrix;
 pub mod missing_force;
 pub mod model;

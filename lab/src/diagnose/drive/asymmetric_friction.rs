@@ -23,21 +23,8 @@ pub fn as_asymmetric(fit: &Fit, first: usize) -> Option<Fit> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::levenberg_marquardt::Ended;
-    use super::super::model::Model;
-    use super::super::noise::Noise;
-    use super::super::testing::SCALES;
+    use super::super::testing::fit_of;
     use super::*;
-
-    fn fit(terms: &[Term], own: &[f64]) -> Fit {
-        Fit {
-            model: Model { terms: terms.to_vec(), scales: SCALES },
-            values: [&[0.8, 4.0, 0.0, 0.0], own].concat(),
-            noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
-            log_likelihood: 7.0,
-            ended: Ended::Converged,
-        }
-    }
 
     #[test]
     fn one_friction_of_two_levels_is_the_same_law() {
@@ -45,7 +32,7 @@ mod tests {
             (&[Term::Coulomb, Term::EffortLag, Term::ConstantLoad], [0.5, 0.01, -0.2]),
             (&[Term::ConstantLoad, Term::EffortLag, Term::Coulomb], [-0.2, 0.01, 0.5]),
         ] {
-            let two = fit(terms, &own);
+            let two = fit_of(terms, &own);
             let one = as_asymmetric(&two, 0).expect("less load than friction");
             assert_eq!(one.model.names(), ["coulomb_friction", "effort_lag"]);
             let (one, two) = (one.model.law(&one.values), two.model.law(&two.values));
@@ -60,8 +47,8 @@ mod tests {
     #[test]
     fn a_load_beyond_the_friction_or_of_the_rig_file_is_a_load() {
         let terms = [Term::Coulomb, Term::ConstantLoad];
-        assert!(as_asymmetric(&fit(&terms, &[0.2, -0.2]), 0).is_none());
-        assert!(as_asymmetric(&fit(&terms, &[0.2, 0.1]), 1).is_none());
-        assert!(as_asymmetric(&fit(&terms[..1], &[0.2]), 0).is_none());
+        assert!(as_asymmetric(&fit_of(&terms, &[0.2, -0.2]), 0).is_none());
+        assert!(as_asymmetric(&fit_of(&terms, &[0.2, 0.1]), 1).is_none());
+        assert!(as_asymmetric(&fit_of(&terms[..1], &[0.2]), 0).is_none());
     }
 }

@@ -2,13 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use super::criteria::{LEAST_LOAD_SHARE, LOAD_SHARE_DEVIATION, MOST_LOAD_SHARE};
 use super::fit::Fit;
 use super::law::Side;
+use super::load_share::{HALF, OfHalves, possible};
 use super::model::index;
 use super::scales::Scales;
-use super::term::{OfHalves, SHARE_OF_SEEN_LOAD, Term};
-use crate::diagnose::interval::NORMAL_97_5;
+use super::term::Term;
 use crate::effects::{Effect, Resolved, find};
 
 /// An effect of the list with its values and their 95 % intervals.
@@ -41,14 +40,15 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     let fixed = |value: f64| (value, [value, value]);
     let pitch = |at: usize| (TAU / values[at], [TAU / ends[at][1], TAU / ends[at][0]]);
     let motor_share = || {
-        let [least, most] = possible_shares(term, ends[2]);
+        let [least, most] = possible(term, ends[2]);
         (1.0 - values[2], [1.0 - most, 1.0 - least])
     };
     // A value that is told with the load's share: over all shares that are possible.
     let of_share = |side: Side, factor: fn(OfHalves) -> f64, at: usize| {
         let at_share = |share: f64| factor(OfHalves::new(side, share));
-        let [least, most] = possible_shares(term, ends[2]);
-        let all = [least, most, 0.5f64.clamp(least, most)].map(at_share);
+        let [least, most] = possible(term, ends[2]);
+        // share (1 - share) is largest at a half, the other factors at an end.
+        let all = [least, most, HALF.clamp(least, most)].map(at_share);
         let low = all.into_iter().fold(f64::INFINITY, f64::min);
         let high = all.into_iter().fold(0.0, f64::max);
         (at_share(values[2]) * values[at], [low * ends[at][0], high * ends[at][1]])
@@ -84,21 +84,6 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     };
     let (values, intervals) = all.into_iter().unzip();
     Some(NamedEffect { effect: find(term.name())?, form, values, intervals })
-}
-
-/// Shares of the inertia that a load may have whose share was found between `ends`, by `term`: beyond a play, where the load alone is seen, all that are believed
-/// beforehand (95 %).
-/// There the share would be told by how a motor that nobody sees slows down within the play, if at all, and an extended Kalman filter, which knows no
-/// instant of a strike within a row, puts its maximum a thousand nats from the truth (0.28 for 0.5 in the tests of `identification`).
-fn possible_shares(term: &Term, ends: [f64; 2]) -> [f64; 2] {
-    match term {
-        Term::Play(Side::Load) => {
-            let half = NORMAL_97_5 * LOAD_SHARE_DEVIATION.value();
-            let least = (SHARE_OF_SEEN_LOAD - half).max(LEAST_LOAD_SHARE.value());
-            [least, (SHARE_OF_SEEN_LOAD + half).min(MOST_LOAD_SHARE.value())]
-        }
-        _ => ends,
-    }
 }
 
 /// The term, with values to start from, of an effect that a rig file already holds; `None` where the drive's model has no such term.
@@ -145,11 +130,9 @@ pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Ter
 
 #[cfg(test)]
 mod tests {
-    use super::super::model::Model;
-    use super::super::noise::Noise;
     use super::*;
-    use crate::diagnose::drive::levenberg_marquardt::Ended;
-    use crate::diagnose::drive::testing::SCALES;
+    use crate::diagnose::drive::testing::{SCALES, fit_of};
+    use crate::diagnose::interval::NORMAL_97_5;
 
     /// The stiffness of a play's flanks is fitted like its gap: an interval without width would be a claim that nothing backs.
     /// A link of 4e4 N/m with a gap of 0.2 mm in a rig file is the same law wherever the encoder is, and told as it was.
@@ -159,13 +142,7 @@ mod tests {
             for side in [Side::Motor, Side::Load] {
                 let resolved = Resolved { effect: find(name).unwrap(), form: 1, values: given.to_vec() };
                 let (term, own) = known(&resolved, &SCALES, side).unwrap();
-                let fit = Fit {
-                    model: Model { terms: vec![term], scales: SCALES },
-                    values: [&[SCALES.inertia, SCALES.viscous, 0.0, 0.0], own.as_slice()].concat(),
-                    noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
-                    log_likelihood: 0.0,
-                    ended: Ended::Converged,
-                };
+                let fit = fit_of(&[term], &own);
                 let link = fit.model.law(&fit.values).link.unwrap();
                 let gap = if name == "backlash" { 2e-4 } else { 0.0 };
                 assert!((link.stiffness / 4e4 - 1.0).abs() < 1e-12 && (link.play - gap).abs() < 1e-16, "{link:?}");
@@ -193,13 +170,7 @@ mod tests {
 
     #[test]
     fn every_value_of_a_play_has_the_interval_of_its_fit() {
-        let fit = Fit {
-            model: Model { terms: vec![Term::Play(Side::Motor)], scales: SCALES },
-            values: vec![0.8, 4.0, 0.0, 0.0, 4e4, 30.0, 0.6, 2e-4, 0.7],
-            noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
-            log_likelihood: 0.0,
-            ended: Ended::Converged,
-        };
+        let fit = fit_of(&[Term::Play(Side::Motor)], &[4e4, 30.0, 0.6, 2e-4, 0.7]);
         let intervals: Vec<[f64; 2]> = fit.values.iter().map(|value| [value - 0.1, value + 0.1]).collect();
         let play = named(&fit, &intervals, 0).unwrap();
         for ((value, ends), expected) in play.values.iter().zip(&play.intervals).zip([2e-4, 0.4, 4e4, 0.3]) {

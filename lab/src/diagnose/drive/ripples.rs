@@ -48,26 +48,13 @@ pub fn as_one_cogging(fit: &Fit, first: usize) -> Option<Fit> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::levenberg_marquardt::Ended;
-    use super::super::model::Model;
-    use super::super::noise::Noise;
-    use super::super::testing::SCALES;
+    use super::super::testing::{SCALES, fit_of};
     use super::*;
-
-    fn fit(terms: &[Term], own: &[f64]) -> Fit {
-        Fit {
-            model: Model { terms: terms.to_vec(), scales: SCALES },
-            values: [&[0.8, 4.0, 0.0, 0.0], own].concat(),
-            noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
-            log_likelihood: 7.0,
-            ended: Ended::Converged,
-        }
-    }
 
     #[test]
     fn two_ripples_are_one_cogging_of_the_same_load() {
         let terms = [Term::Cogging, Term::Coulomb, Term::Cogging];
-        let two = fit(&terms, &[0.1, 0.2, 900.0, 0.5, 0.3, -0.1, 300.0]);
+        let two = fit_of(&terms, &[0.1, 0.2, 900.0, 0.5, 0.3, -0.1, 300.0]);
         let one = as_one_cogging(&two, 0).expect("two of them");
         assert_eq!(one.model.terms, [Term::TwoRipples, Term::Coulomb]);
         assert_eq!((ripples(&one), one.model.names()), (vec![300.0, 900.0], two.model.names()));
@@ -78,7 +65,8 @@ mod tests {
         assert_eq!(laws[0].friction, laws[1].friction);
         // What the rig file holds stays as it is, and one is one.
         assert!(
-            as_one_cogging(&two, 1).is_none() && as_one_cogging(&fit(&terms[1..], &[0.5, 0.3, 0.1, 9.0]), 0).is_none()
+            as_one_cogging(&two, 1).is_none()
+                && as_one_cogging(&fit_of(&terms[1..], &[0.5, 0.3, 0.1, 9.0]), 0).is_none()
         );
     }
 
@@ -86,9 +74,9 @@ mod tests {
     fn ripples_that_beat_once_over_the_travel_are_not_two() {
         let finest = TAU / SCALES.travel;
         let apart =
-            |by: f64| are_resolved(&fit(&[Term::Cogging, Term::Cogging], &[1.0, 0.0, 400.0, 1.0, 0.0, 400.0 + by]));
+            |by: f64| are_resolved(&fit_of(&[Term::Cogging, Term::Cogging], &[1.0, 0.0, 400.0, 1.0, 0.0, 400.0 + by]));
         assert!(apart(1.01 * finest) && apart(-1.01 * finest) && !apart(0.99 * finest) && !apart(0.0));
-        assert!(are_resolved(&fit(&[Term::Cogging], &[1.0, 0.0, 400.0])));
-        assert!(!are_resolved(&fit(&[Term::TwoRipples], &[1.0, 0.0, 400.0, 1.0, 0.0, 400.0])));
+        assert!(are_resolved(&fit_of(&[Term::Cogging], &[1.0, 0.0, 400.0])));
+        assert!(!are_resolved(&fit_of(&[Term::TwoRipples], &[1.0, 0.0, 400.0, 1.0, 0.0, 400.0])));
     }
 }

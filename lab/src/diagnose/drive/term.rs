@@ -2,12 +2,12 @@
 
 use super::course::{Along, Course, Varying};
 use super::criteria::{
-    GENTLEST_LIMIT, LEAST_EXPONENT, LEAST_LOAD_SHARE, LOAD_DEVIATION, LOAD_SHARE_DEVIATION, LONGEST_PRESLIDING,
-    MOST_EXPONENT, MOST_LOAD_SHARE, SLOWEST_SWING,
+    GENTLEST_LIMIT, LEAST_EXPONENT, LOAD_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT, SLOWEST_SWING,
 };
 use super::curve::Curve;
 use super::effort_limit::EffortLimit;
 use super::law::{DriveLaw, Link, Periodic, Side};
+use super::load_share::{OfHalves, beyond_play, of_friction, of_link};
 use super::range::{Prior, Range};
 use super::scales::Scales;
 
@@ -150,10 +150,6 @@ impl Term {
         let fastest = 4.0 / scales.period_s;
         let stiffness = Range::relative(scales.inertia * swing * swing, scales.inertia * fastest * fastest);
         let damping = Range::relative(1e-2 * scales.inertia / scales.duration_s, scales.inertia / scales.period_s);
-        let friction_share = |side: Side| {
-            let most = 1.0 / OfHalves::new(side, LEAST_LOAD_SHARE.value()).friction;
-            Range::absolute(0.0, most, 0.1)
-        };
         match self {
             Self::Coulomb => vec![positive],
             Self::AsymmetricCoulomb => vec![positive, positive],
@@ -185,10 +181,14 @@ impl Term {
                 vec![Range::relative(0.2 * scales.effort, (GENTLEST_LIMIT * scales.peak_effort).value())]
             }
             Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
-            Self::Compliance(side) => vec![stiffness, damping, share_of_load(*side), friction_share(*side)],
+            Self::Compliance(side) => {
+                let share = of_link(*side);
+                vec![stiffness, damping, share, of_friction(*side, &share)]
+            }
             Self::Play(side) => {
                 let play = Range::relative(0.05 * scales.resolution, 0.2 * scales.travel);
-                vec![stiffness, damping, share_beyond_play(*side), play, friction_share(*side)]
+                let share = beyond_play(*side);
+                vec![stiffness, damping, share, play, of_friction(*side, &share)]
             }
             Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],
             Self::ForceDelay => vec![Range::absolute(-2.0 * scales.period_s, 0.05, scales.period_s)],
@@ -320,60 +320,6 @@ impl Term {
                 law.curve = Curve { origin: *origin, spacing: *spacing, knots: values.to_vec() };
             }
         }
-    }
-}
-
-/// What the values of a link are to be multiplied by, one whose encoder sits on the load: they are those of two halves that move the load
-/// alike.
-///
-/// From the effort to the load's position a link is (c s + k) / (m1 m2 s^4 + (m1 + m2) (c s + k) s^2): without the motor's position the motion tells
-/// the sum of the inertias, and stiffness and damping over their product. And a motor that nobody sees crosses a play in the time that its
-/// inertia times the gap takes, while the load slows down by its friction over its inertia. None of them is told without the share, and
-/// with these values the share is a direction of its own. What is told of them has the width of all shares that are possible.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OfHalves {
-    /// Of stiffness and damping.
-    pub stiffness: f64,
-    /// Of the gap.
-    pub play: f64,
-    /// Of the load's share of the viscous friction.
-    pub friction: f64,
-}
-
-impl OfHalves {
-    /// For a load of `load_share` of the inertia; one where the encoder is on the motor.
-    #[must_use]
-    pub fn new(encoder: Side, load_share: f64) -> Self {
-        match encoder {
-            Side::Motor => Self { stiffness: 1.0, play: 1.0, friction: 1.0 },
-            Side::Load => Self {
-                stiffness: 4.0 * load_share * (1.0 - load_share),
-                play: 0.5 / (1.0 - load_share),
-                friction: 2.0 * load_share,
-            },
-        }
-    }
-}
-
-/// Share of the inertia that a load is taken to have where it alone is seen (see [`OfHalves`]): half, as where both sides are matched for the greatest
-/// acceleration.
-pub const SHARE_OF_SEEN_LOAD: f64 = 0.5;
-
-/// Range of the load's share of the inertia, of a link without play whose encoder sits on `side`. Of a load that alone is seen a contact's force or friction can
-/// tell it, and it is believed beforehand.
-fn share_of_load(side: Side) -> Range {
-    let share = Range::absolute(LEAST_LOAD_SHARE.value(), MOST_LOAD_SHARE.value(), 0.1);
-    match side {
-        Side::Motor => share,
-        Side::Load => share.known(Prior { mean: SHARE_OF_SEEN_LOAD, deviation: LOAD_SHARE_DEVIATION.value() }),
-    }
-}
-
-/// The same of a play; that of a load that alone is seen is held (see [`super::named`]).
-fn share_beyond_play(side: Side) -> Range {
-    match side {
-        Side::Motor => share_of_load(side),
-        Side::Load => Range::absolute(SHARE_OF_SEEN_LOAD, SHARE_OF_SEEN_LOAD, 0.1),
     }
 }
 

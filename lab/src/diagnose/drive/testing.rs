@@ -4,14 +4,16 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::fit::{Effort, fit};
+use super::fit::{Effort, Fit, fit};
 use super::law::{DriveLaw, Link, Side};
+use super::levenberg_marquardt::Ended;
 use super::likelihood::Data;
 use super::model::Model;
 use super::noise::Noise;
 use super::nominal::NominalDrive;
 use super::scales::Scales;
 use super::selection::Search;
+use super::term::Term;
 use super::trial::DriveTrial;
 
 /// A pair of bodies with the encoder on its motor, without friction.
@@ -211,6 +213,18 @@ impl TestDrive {
 #[must_use]
 pub fn known_load(time: f64, seed: u64) -> f64 {
     2.0 * (3.0 * time + seed as f64).sin()
+}
+
+/// A fit of `terms` with their `own` values beside 0.8 kg and 4 N s/m.
+#[must_use]
+pub fn fit_of(terms: &[Term], own: &[f64]) -> Fit {
+    Fit {
+        model: Model { terms: terms.to_vec(), scales: SCALES },
+        values: [&[0.8, 4.0, 0.0, 0.0], own].concat(),
+        noise: Noise { ln_disturbance: -11.0, ln_encoder: -24.0 },
+        log_likelihood: 7.0,
+        ended: Ended::Converged,
+    }
 }
 
 /// A search over `trials` of a drive that the rig file knows rightly, its nominal law fitted.
