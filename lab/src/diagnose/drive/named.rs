@@ -40,13 +40,13 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
     let fixed = |value: f64| (value, [value, value]);
     let pitch = |at: usize| (TAU / values[at], [TAU / ends[at][1], TAU / ends[at][0]]);
     let motor_share = || {
-        let [least, most] = possible(term, ends[2]);
+        let [least, most] = possible(term, &fit.model.scales, ends[2]);
         (1.0 - values[2], [1.0 - most, 1.0 - least])
     };
     // A value that is told with the load's share: over all shares that are possible.
     let of_share = |side: Side, factor: fn(OfHalves) -> f64, at: usize| {
         let at_share = |share: f64| factor(OfHalves::new(side, share));
-        let [least, most] = possible(term, ends[2]);
+        let [least, most] = possible(term, &fit.model.scales, ends[2]);
         // share (1 - share) is largest at a half, the other factors at an end.
         let all = [least, most, HALF.clamp(least, most)].map(at_share);
         let low = all.into_iter().fold(f64::INFINITY, f64::min);
@@ -152,14 +152,14 @@ mod tests {
                 for (value, given) in told.values.iter().zip(given) {
                     assert!((value / given - 1.0).abs() < 1e-12, "{name} {side:?}: {:?}", told.values);
                 }
-                // The gap goes with 1 / (1 - share), the stiffness with share (1 - share), from the 0.7 that were given: of a play over the shares
-                // from 0.2 to 0.5 + 1.96 times 0.2 that are believed where the load alone is seen, of a link over those that were found.
+                // The gap goes with 1 / (1 - share), the stiffness with share (1 - share), from the 0.7 that were given: over the shares from 0.2
+                // to 0.5 + 1.96 times 0.2 that are believed where the load alone is seen and nothing is touched.
                 let most = 0.5 + 0.2 * NORMAL_97_5;
                 let expected = match (side, name) {
                     (Side::Motor, "backlash") => [2e-4, 2e-4],
                     (Side::Load, "backlash") => [2e-4 * 0.3 / 0.8, 2e-4 * 0.3 / (1.0 - most)],
                     (Side::Motor, _) => [4e4, 4e4],
-                    (Side::Load, _) => [4e4 * 0.1875 / 0.21, 4e4 * 0.25 / 0.21],
+                    (Side::Load, _) => [4e4 * most * (1.0 - most) / 0.21, 4e4 * 0.25 / 0.21],
                 };
                 for (end, expected) in told.intervals[0].iter().zip(expected) {
                     assert!((end / expected - 1.0).abs() < 1e-12, "{name} {side:?}: {:?}", told.intervals[0]);

@@ -90,6 +90,7 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
         viscous: rig.viscous,
         resolution: rig.resolution.max(1e-6 * travel),
         is_rotary: rig.is_rotary,
+        touches: trials.iter().all(|trial| trial.force.is_some()),
     })
 }
 

@@ -202,6 +202,7 @@ mod tests {
         viscous: 4.0,
         resolution: 0.0,
         is_rotary: false,
+        touches: false,
     };
 
     /// Missing force by balance, of a drive whose motion does not matter here: dry friction, noise, and what `push` adds.

@@ -29,6 +29,8 @@ pub struct Scales {
     pub resolution: f64,
     /// Whether positions are angles.
     pub is_rotary: bool,
+    /// Whether every trial holds the force of a contact.
+    pub touches: bool,
 }
 
 impl Scales {

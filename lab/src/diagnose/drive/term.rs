@@ -7,7 +7,7 @@ use super::criteria::{
 use super::curve::Curve;
 use super::effort_limit::EffortLimit;
 use super::law::{DriveLaw, Link, Periodic, Side};
-use super::load_share::{OfHalves, beyond_play, of_friction, of_link};
+use super::load_share::{self, OfHalves, of_friction};
 use super::range::{Prior, Range};
 use super::scales::Scales;
 
@@ -182,12 +182,12 @@ impl Term {
             }
             Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
             Self::Compliance(side) => {
-                let share = of_link(*side);
+                let share = load_share::range(self, scales);
                 vec![stiffness, damping, share, of_friction(*side, &share)]
             }
             Self::Play(side) => {
                 let play = Range::relative(0.05 * scales.resolution, 0.2 * scales.travel);
-                let share = beyond_play(*side);
+                let share = load_share::range(self, scales);
                 vec![stiffness, damping, share, play, of_friction(*side, &share)]
             }
             Self::ForceGain => vec![Range::absolute(-0.5, 1.0, 0.02)],

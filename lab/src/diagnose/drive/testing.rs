@@ -42,6 +42,7 @@ pub const SCALES: Scales = Scales {
     viscous: 4.0,
     resolution: 1e-5,
     is_rotary: false,
+    touches: false,
 };
 
 /// A drive under a position controller that ticks once a row.
