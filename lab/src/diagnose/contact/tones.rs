@@ -22,8 +22,11 @@ pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f
         // Of a form with harmonics, what all of them take: the sum is largest at the fundamental (least squares: M. G. Christensen,
         // A. Jakobsson, Multi-Pitch Estimation, 2009).
         let harmonics = |frequency: f64| (1..=search.harmonics).map(move |times| times as f64 * frequency);
-        let all = |frequency: &f64| harmonics(*frequency).map(|one| rows.power(one)).sum::<f64>();
-        let power: Vec<f64> = frequencies.par_iter().map(all).collect();
+        let mut power = vec![0.0; count];
+        for times in 1..=search.harmonics {
+            let one = rows.spectrum(times as f64 * first, times as f64 * apart, count);
+            power.iter_mut().zip(one).for_each(|(all, one)| *all += one);
+        }
         let level = |at: Option<usize>| at.and_then(|at| power.get(at)).copied().unwrap_or(f64::NEG_INFINITY);
         let peaks = (0..count).filter(|at| power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1)));
         // A wave in step with the motion itself is not told from a law of the motion.
@@ -99,17 +102,86 @@ impl Rows {
 
     /// What a wave of that frequency takes.
     fn power(&self, frequency: f64) -> f64 {
-        let pulse = std::f64::consts::TAU * frequency;
-        let trial = |rows: &Vec<(f64, f64, f64)>| {
-            let (mut sine, mut cosine, mut weight) = (0.0, 0.0, 0.0);
-            for (time, own, rest) in rows {
-                let (s, c) = (pulse * time).sin_cos();
-                sine += own * s * rest;
-                cosine += own * c * rest;
-                weight += own * own;
-            }
-            2.0 * (sine * sine + cosine * cosine) / f64::max(weight, f64::MIN_POSITIVE)
+        self.spectrum(frequency, 0.0, 1)[0]
+    }
+
+    /// What waves of `count` frequencies take, the first `first` and each `apart` from the one before, Hz.
+    fn spectrum(&self, first: f64, apart: f64, count: usize) -> Vec<f64> {
+        let starts: Vec<usize> = (0..count).step_by(TURNS).collect();
+        let part = |start: &usize| {
+            let mut power = vec![0.0; TURNS.min(count - start)];
+            let frequency = first + apart * *start as f64;
+            self.0.iter().for_each(|rows| add_powers(rows, frequency, apart, &mut power));
+            power
         };
-        self.0.iter().map(trial).sum()
+        starts.par_iter().flat_map(part).collect()
+    }
+}
+
+/// Frequencies that are reached by turning each row's wave on from the one before: rounding adds up over them.
+const TURNS: usize = 64;
+
+/// Adds to each of `power` what `rows` hold of waves from `frequency` on, each `apart` from the one before.
+fn add_powers(rows: &[(f64, f64, f64)], frequency: f64, apart: f64, power: &mut [f64]) {
+    let square: f64 = rows.iter().map(|(_, weight, _)| weight * weight).sum();
+    let wave = |frequency: f64| {
+        let pulse = std::f64::consts::TAU * frequency;
+        rows.iter().map(move |(time, ..)| (pulse * time).sin_cos())
+    };
+    let mut waves: Vec<(f64, f64)> = wave(frequency).collect();
+    let turns: Vec<(f64, f64)> = wave(apart).collect();
+    for power in power {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for ((row, wave), turn) in rows.iter().zip(&mut waves).zip(&turns) {
+            let signal = row.1 * row.2;
+            sine += signal * wave.0;
+            cosine += signal * wave.1;
+            *wave = (wave.0 * turn.1 + wave.1 * turn.0, wave.1 * turn.1 - wave.0 * turn.0);
+        }
+        *power += 2.0 * (sine * sine + cosine * cosine) / f64::max(square, f64::MIN_POSITIVE);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two trials of rows that are not evenly spaced, with two waves of other phases and a weight of their own.
+    fn rows() -> Rows {
+        let trial = |phase: f64| {
+            let row = |at: usize| {
+                let at = at as f64;
+                let time = 0.01 * at + 1e-3 * (1.7 * at).sin();
+                (time, 1.0 + 0.3 * (0.9 * at).cos(), (7.0 * time + phase).sin() + 0.4 * (31.0 * time - phase).cos())
+            };
+            (0..900).map(row).collect()
+        };
+        Rows(vec![trial(0.3), trial(1.1)])
+    }
+
+    #[test]
+    fn a_spectrum_is_at_each_frequency_what_a_wave_of_it_takes() {
+        let (rows, count) = (rows(), 200);
+        let spectrum = rows.spectrum(0.2, 0.05, count);
+        let directly = |frequency: f64| {
+            let trial = |rows: &Vec<(f64, f64, f64)>| {
+                let sum = |wave: fn(f64) -> f64| {
+                    let each = rows
+                        .iter()
+                        .map(|(time, weight, rest)| weight * rest * wave(std::f64::consts::TAU * frequency * time));
+                    each.sum::<f64>()
+                };
+                let square: f64 = rows.iter().map(|(_, weight, _)| weight * weight).sum();
+                2.0 * (sum(f64::sin).powi(2) + sum(f64::cos).powi(2)) / square
+            };
+            rows.0.iter().map(trial).sum::<f64>()
+        };
+        assert_eq!(spectrum.len(), count);
+        let loudest = spectrum.iter().fold(0.0f64, |most, power| most.max(*power));
+        // 64 turns of a rounding each, over sums of 900 rows.
+        for (at, power) in spectrum.iter().enumerate() {
+            let direct = directly(0.2 + 0.05 * at as f64);
+            assert!((power - direct).abs() < 1e-12 * loudest, "{at}: {power} {direct}");
+        }
     }
 }

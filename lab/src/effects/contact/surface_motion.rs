@@ -109,11 +109,16 @@ impl Effect for SurfaceMotion {
             return;
         }
         let Some((frequency, parts)) = values.split_last() else { return };
+        let pulse = TAU * frequency;
+        let (sine, cosine) = (pulse * touch.time).sin_cos();
+        // Each harmonic from the one before it, turned by the first.
+        let (mut sine_n, mut cosine_n) = (sine, cosine);
         for (at, wave) in parts.chunks_exact(2).enumerate() {
-            let pulse = TAU * (at + 1) as f64 * frequency;
-            let (sine, cosine) = (pulse * touch.time).sin_cos();
-            touch.position -= wave[0] * sine + wave[1] * cosine;
-            touch.velocity -= pulse * (wave[0] * cosine - wave[1] * sine);
+            if at > 0 {
+                (sine_n, cosine_n) = (sine_n * cosine + cosine_n * sine, cosine_n * cosine - sine_n * sine);
+            }
+            touch.position -= wave[0] * sine_n + wave[1] * cosine_n;
+            touch.velocity -= pulse * (at + 1) as f64 * (wave[0] * cosine_n - wave[1] * sine_n);
         }
     }
 }
