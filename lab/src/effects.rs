@@ -15,6 +15,7 @@ mod drive_state;
 mod effect_spec;
 mod excitation_stats;
 mod first_order_lag;
+mod foundation;
 mod reading;
 mod resolved;
 mod sensor;
@@ -28,6 +29,7 @@ pub use drive_state::DriveState;
 pub use effect_spec::{EffectSpec, Form, Limit, Parameter, Place, Stage, key_of, slug};
 pub use excitation_stats::{ExcitationStats, FrequencySearch, Start, ToneWeight, geometric, linear};
 pub use first_order_lag::lagged;
+pub use foundation::Foundation;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 pub use sensor::mains_hum::MAINS_TOLERANCE;
@@ -62,8 +64,8 @@ pub trait Effect: Sync {
     /// Where a search for its parameters starts, for form `form`, in the measures of `scene`.
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start>;
 
-    /// Names of effects of which one has to be there for form `form` to differ from a simpler one; none where it always does.
-    fn builds_on(&self, _form: usize) -> &'static [&'static str] {
+    /// Laws of which one has to be there for form `form` to differ from a simpler one; none where it always does.
+    fn builds_on(&self, _form: usize) -> &'static [Foundation] {
         &[]
     }
 

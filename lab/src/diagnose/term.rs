@@ -1,6 +1,6 @@
 //! An effect in a model, by one of its laws.
 
-use crate::effects::{Effect, Parameter};
+use crate::effects::{Effect, Foundation, Parameter};
 
 /// An effect in a model.
 #[derive(Clone, Copy)]
@@ -48,6 +48,18 @@ impl Term {
             all[next - 1]
         };
         (0..parameters.len()).map(&mut pick).collect()
+    }
+
+    /// Laws of which one has to be there for it to differ from a simpler one.
+    #[must_use]
+    pub fn foundations(&self) -> &'static [Foundation] {
+        self.effect.builds_on(self.form)
+    }
+
+    /// Whether it builds on `lower`.
+    #[must_use]
+    pub fn builds_on(&self, lower: &Self) -> bool {
+        self.foundations().iter().any(|law| law.is(lower.name(), lower.form))
     }
 
     /// Whether both are the same law of the same effect.

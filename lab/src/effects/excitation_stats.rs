@@ -11,6 +11,8 @@ pub struct ExcitationStats {
     pub acceleration: f64,
     /// Greatest measured force in size.
     pub force: f64,
+    /// Greatest pull that was measured, in size; zero where there is none.
+    pub pull: f64,
     /// Greatest effort in size; zero where none is recorded.
     pub effort: f64,
     /// Least and greatest position.

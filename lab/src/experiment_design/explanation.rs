@@ -174,6 +174,11 @@ fn excitation_stats(rig: &Rig, trials: &[Recording]) -> ExcitationStats {
         speed,
         acceleration: speed * std::f64::consts::TAU,
         force: peak(|trial| trial.force.as_ref()),
+        pull: trials
+            .iter()
+            .filter_map(|trial| trial.force.as_ref())
+            .flatten()
+            .fold(0.0, |most, force| most.max(-force)),
         effort: peak(|trial| trial.effort.as_ref()),
         travel: (low, high),
         duration,

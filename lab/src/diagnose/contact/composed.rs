@@ -29,7 +29,7 @@ impl Search<'_> {
                     names.extend([lower, upper_name]);
                     let question = (names, fit.model.own);
                     if !asked.contains(&question) {
-                        composed.extend(self.composed_on(&bare, lower, upper_name));
+                        composed.extend(self.composed_on(&bare, lower, &fit.model.terms[upper]));
                         asked.push(question);
                     }
                 }
@@ -50,13 +50,16 @@ impl Search<'_> {
         bare
     }
 
-    /// `bare` with the forms of `lower_name` and, building on it, of `upper_name` that do best together.
-    fn composed_on(&self, bare: &Fit, lower_name: &'static str, upper_name: &str) -> Vec<Fit> {
+    /// `bare` with the forms of `lower_name` and, building on it, of the effect of `upper` that do best together.
+    fn composed_on(&self, bare: &Fit, lower_name: &'static str, upper: &Term) -> Vec<Fit> {
         let bare = self.coarse.fit(&bare.model, &bare.values, Effort::QUICK);
-        let lowers = self.promises(&bare, &|term| term.name() == lower_name);
+        let forms = forms_of(upper);
+        let is_lower = |term: &Term| term.name() == lower_name && forms.iter().any(|upper| upper.builds_on(term));
+        let lowers = self.promises(&bare, &is_lower);
         let lowers: Vec<Fit> = lowers.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
-        let is_upper =
-            |term: &Term| term.name() == upper_name && term.effect.builds_on(term.form).contains(&lower_name);
+        let is_upper = |term: &Term| {
+            term.name() == upper.name() && term.foundations().iter().any(|lower| lower.name == lower_name)
+        };
         let both: Vec<_> = lowers.iter().flat_map(|base| self.promises(base, &is_upper)).collect();
         let both = both.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
         // Each form for itself: which of them the other effects leave standing is told later, on every row.
@@ -66,9 +69,14 @@ impl Search<'_> {
 
 /// Laws of the spring that some form of `upper`'s effect builds on.
 fn springs_under(upper: &Term) -> impl Iterator<Item = &'static str> {
-    let forms = 0..upper.effect.spec().forms.len();
-    let builds_on = move |spring: &str| forms.clone().any(|form| upper.effect.builds_on(form).contains(&spring));
+    let forms = forms_of(upper);
+    let builds_on = move |spring: &str| forms.iter().flat_map(Term::foundations).any(|law| law.name == spring);
     SPRINGS.into_iter().filter(move |spring| builds_on(spring))
+}
+
+/// All laws of `term`'s effect.
+fn forms_of(term: &Term) -> Vec<Term> {
+    (0..term.effect.spec().forms.len()).map(|form| Term { form, ..*term }).collect()
 }
 
 #[cfg(test)]

@@ -85,6 +85,13 @@ impl ContactModel {
         is_alone.then(|| self.first_value_of(at) + size)
     }
 
+    /// Whether it holds what `term` builds on, if that builds on anything.
+    #[must_use]
+    pub fn bears(&self, term: &Term) -> bool {
+        let needed = term.foundations();
+        needed.is_empty() || self.terms.iter().any(|own| term.builds_on(own))
+    }
+
     /// Values of `term`.
     #[must_use]
     pub fn count_of(&self, term: &Term) -> usize {

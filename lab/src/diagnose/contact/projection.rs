@@ -72,8 +72,7 @@ impl<'a> Projection<'a> {
             }
             for form in 0..spec.forms.len() {
                 let term = Term { effect, form };
-                let needed = effect.builds_on(form);
-                if !asked_for(&term) || !needed.is_empty() && needed.iter().all(|name| model.times(name) == 0) {
+                if !asked_for(&term) || !model.bears(&term) {
                     continue;
                 }
                 let mut starts = effect.starts(form, excitation);

@@ -81,8 +81,7 @@ pub fn without_term(fit: &Fit, at: usize) -> (ContactModel, Vec<f64>) {
     let stiffness = values[index::STIFFNESS].max(LEAST_STIFFNESS * model.scales.stiffness());
     for nth in 0..model.terms.len() {
         let Term { effect, form } = model.terms[nth];
-        let needed = effect.builds_on(form);
-        if needed.is_empty() || needed.iter().any(|name| model.times(name) > 0) {
+        if model.bears(&model.terms[nth]) {
             continue;
         }
         let start = model.first_value_of(nth);

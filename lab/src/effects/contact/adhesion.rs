@@ -1,7 +1,7 @@
 //! A surface that holds on.
 
 use crate::effects::{
-    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Parameter, Place, Stage, Start,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Foundation, Parameter, Place, Stage, Start,
 };
 use crate::rig::Word;
 
@@ -97,8 +97,10 @@ impl Effect for Adhesion {
         &SPEC
     }
 
-    fn builds_on(&self, form: usize) -> &'static [&'static str] {
-        if form == form::SPHERE { &["nonlinear_stiffness"] } else { &[] }
+    fn builds_on(&self, form: usize) -> &'static [Foundation] {
+        // Hertz's law is a power law.
+        const HERTZ: [Foundation; 1] = [Foundation::of_form("nonlinear_stiffness", 0)];
+        if form == form::SPHERE { &HERTZ } else { &[] }
     }
 
     fn simpler(&self, form: usize, values: &[f64], stiffness: f64) -> Option<(usize, Vec<f64>)> {
@@ -114,14 +116,24 @@ impl Effect for Adhesion {
         let height = force / scene.stiffness.max(f64::MIN_POSITIVE);
         let away = (scene.travel.1 - scene.travel.0 - scene.depth).max(0.3 * scene.depth);
         if form == form::SPHERE {
-            return [0.2, 1.0, 4.0].iter().map(|times| Start::at(&[times * force])).collect();
+            let measured = Some(scene.pull).filter(|pull| *pull > 0.0);
+            return [0.2 * force, force, 4.0 * force]
+                .into_iter()
+                .chain(measured)
+                .map(|pull| Start::at(&[pull]))
+                .collect();
         }
         let near = [0.3, 1.0, 3.0, 10.0].iter().map(|factor| (factor * height).min(away));
         let heights = near.chain([0.05, 0.2, 0.5].iter().map(|part| part * away));
+        // A small pull grows in proportion until the spring cannot pull as much: one that was measured is tried at its own size.
+        let stretched = (scene.pull / scene.stiffness.max(f64::MIN_POSITIVE)).min(away);
+        let measured = [0.5, 1.0, 2.0].iter().map(|times| times * stretched).filter(|height| *height > 0.0);
         if form == form::COHESIVE {
-            return heights.map(|height| Start::sized(&[force, height, 1.5 * height], &[0])).collect();
+            let small = heights.map(|height| Start::sized(&[force, height, 1.5 * height], &[0]));
+            return small.chain(measured.map(|height| Start::at(&[scene.pull, height, 1.5 * height]))).collect();
         }
-        heights.map(|height| Start::sized(&[force, height], &[0])).collect()
+        let small = heights.map(|height| Start::sized(&[force, height], &[0]));
+        small.chain(measured.map(|height| Start::at(&[scene.pull, height]))).collect()
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
@@ -181,6 +193,9 @@ impl Effect for Adhesion {
 /// Steps of Newton's method, which comes down on the root from above and doubles its digits.
 const STEPS: usize = 12;
 
+/// Part of the root below which a step is the last: the next one would be as its square.
+const SHORTEST_STEP: f64 = 1e-10;
+
 /// A sphere that adheres (Johnson, Kendall, Roberts). The circle of contact is that of Hertz's law at a virtual depth h, from which a flat punch
 /// of that circle is drawn back by b h^(1/4); b is what makes the greatest pull that asked for.
 struct Sphere {
@@ -195,52 +210,74 @@ impl Sphere {
         Self { hertz, drawn_back: 4.0 / 3.0 * (pull_off_force / hertz).sqrt() }
     }
 
-    /// Lowest place at which it holds on, negative: below it no circle of contact has a balance.
-    fn last_place(&self) -> f64 {
-        let root = (0.25 * self.drawn_back).cbrt();
-        root * (root.powi(3) - self.drawn_back)
+    /// Fourth root u of the least h with a balance: where u^4 - b u is least.
+    fn least_root(&self) -> f64 {
+        (0.25 * self.drawn_back).cbrt()
     }
 
-    /// The force at `place`, no lower than [`Sphere::last_place`].
-    fn force(&self, place: f64) -> f64 {
-        // u^4 - b u = place, u the fourth root of h: the greater root, from above it. All derivatives are positive there, so the parabola about
-        // the least place meets it late, and exactly where the two roots meet, where Newton's steps alone would only halve.
-        let least = (0.25 * self.drawn_back).cbrt();
-        let parabola = least + ((place - self.last_place()).max(0.0) / (6.0 * least * least)).sqrt();
-        let mut root = parabola.min(self.drawn_back.cbrt() + place.max(0.0).sqrt().sqrt());
+    /// The place there, negative: below it no circle of contact has a balance.
+    fn last_place(&self, least_root: f64) -> f64 {
+        least_root * (least_root.powi(3) - self.drawn_back)
+    }
+
+    /// The fourth root u of h at `place`, no lower than [`Sphere::last_place`]: the greater root of u^4 - b u = place, where this is convex. `near`
+    /// is a root not far from it, zero where none is known.
+    fn root(&self, place: f64, near: f64) -> f64 {
+        let slope = |root: f64| 4.0 * root.powi(3) - self.drawn_back;
+        // Below the surface the slope is three times b at the least, and a near root leads to it; above it the two roots come together.
+        let mut root = if place > 0.0 && slope(near) > 0.0 { near } else { self.above(place) };
         for _ in 0..STEPS {
-            let slope = 4.0 * root.powi(3) - self.drawn_back;
-            if slope <= 0.0 {
-                break;
-            }
-            let step = (root.powi(4) - self.drawn_back * root - place) / slope;
-            root -= step;
-            if step.abs() <= f64::EPSILON * root {
+            let step = (root.powi(4) - self.drawn_back * root - place) / slope(root);
+            // From below the root a step ends above it, and may end far above it.
+            root = if -step > root { (root - step).min(self.above(place)) } else { root - step };
+            if step.abs() <= SHORTEST_STEP * root || slope(root) <= 0.0 {
                 break;
             }
         }
-        self.hertz * (root.powi(6) - 1.5 * self.drawn_back * root.powi(3))
+        root
     }
 
-    /// Puts the adhering sphere in the place of the spring. state: whether the surface holds on, deepest place of this touch, c there.
+    /// No less than the root at `place`. All derivatives are positive there, so the parabola about the least place meets it late, and exactly
+    /// where the two roots meet, where Newton's steps alone would only halve.
+    fn above(&self, place: f64) -> f64 {
+        let least = self.least_root();
+        let parabola = least + ((place - self.last_place(least)).max(0.0) / (6.0 * least * least)).sqrt();
+        parabola.min(self.drawn_back.cbrt() + place.max(0.0).sqrt().sqrt())
+    }
+
+    /// The force where the fourth root of h is `root`.
+    fn force(&self, root: f64) -> f64 {
+        let cube = root.powi(3);
+        self.hertz * cube * (cube - 1.5 * self.drawn_back)
+    }
+
+    /// Puts the adhering sphere in the place of the spring. state: whether the surface holds on, deepest place of this touch, c there, fourth
+    /// root of h an instant ago, and the place at which it lets go, zero where that is not known.
     fn act(pull_off_force: f64, state: &mut EffectState, touch: &mut ContactState) {
+        let hertz_depth = touch.position.max(0.0) * touch.position.max(0.0).sqrt();
         if touch.position > 0.0 {
             if state[0] == 0.0 {
-                (state[0], state[1]) = (1.0, 0.0);
+                (state[0], state[1], state[3]) = (1.0, 0.0, 0.0);
             }
             if touch.position > state[1] {
-                (state[1], state[2]) = (touch.position, touch.spring / touch.position.powf(1.5));
+                (state[1], state[2], state[4]) = (touch.position, touch.spring / hertz_depth, 0.0);
             }
         }
         if state[0] == 0.0 || state[2] <= 0.0 || pull_off_force <= 0.0 {
             return;
         }
         let sphere = Self::new(state[2], pull_off_force);
-        if touch.position < sphere.last_place() {
-            state[0] = 0.0;
-            return;
+        if touch.position <= 0.0 {
+            if state[4] == 0.0 {
+                state[4] = sphere.last_place(sphere.least_root());
+            }
+            if touch.position < state[4] {
+                state[0] = 0.0;
+                return;
+            }
         }
-        touch.force += sphere.force(touch.position) - sphere.hertz * touch.position.max(0.0).powf(1.5);
+        state[3] = sphere.root(touch.position, state[3]);
+        touch.force += sphere.force(state[3]) - sphere.hertz * hertz_depth;
     }
 }
 
@@ -293,6 +330,30 @@ mod tests {
         assert!((force + 5.0 / 9.0 * pull_off).abs() < 1e-3 * pull_off, "{force}");
         assert_eq!(at(last - 1e-9), 0.0);
         assert_eq!(at(last + 1e-9), 0.0, "once let go it does not pull again");
+    }
+
+    /// A tip of 4 N/m that pulls by 80 nN on its way out and pushes by 250 nN: small pulls, which grow in proportion, end where the spring pulls as
+    /// much, 12 nN at 3 nm.
+    #[test]
+    fn a_pull_that_was_measured_is_tried_at_its_own_size() {
+        let scene = ExcitationStats {
+            depth: 6e-8,
+            force: 2.5e-7,
+            pull: 8e-8,
+            travel: (-5e-8, 7e-8),
+            stiffness: 4.0,
+            releases: 3,
+            ..ExcitationStats::default()
+        };
+        for form in [0, form::ATTRACTION, form::COHESIVE, form::BRIDGE, form::CAPILLARY, form::SPHERE] {
+            let whole = |start: &Start| start.linear_parameters.is_empty() && start.values[0] == scene.pull;
+            let starts: Vec<Start> = Adhesion.starts(form, &scene).into_iter().filter(whole).collect();
+            assert!(!starts.is_empty(), "form {form}");
+            let is_near = |start: &Start| (start.values[1] / 2e-8).ln().abs() < 0.1;
+            assert!(form == form::SPHERE || starts.iter().any(is_near), "form {form}: {starts:?}");
+        }
+        let none = ExcitationStats { pull: 0.0, ..scene };
+        assert!(Adhesion.starts(0, &none).iter().all(|start| !start.linear_parameters.is_empty()));
     }
 
     #[test]

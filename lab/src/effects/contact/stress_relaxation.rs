@@ -1,8 +1,8 @@
 //! A force that fades while the tool is held.
 
 use crate::effects::{
-    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Limit, Parameter, Place, Stage, Start,
-    geometric,
+    ContactState, Effect, EffectSpec, EffectState, ExcitationStats, Form, Foundation, Limit, Parameter, Place, Stage,
+    Start, geometric,
 };
 use crate::rig::Word;
 
@@ -174,8 +174,13 @@ impl Effect for StressRelaxation {
         &SPEC
     }
 
-    fn builds_on(&self, form: usize) -> &'static [&'static str] {
-        if form >= 3 { &["nonlinear_stiffness", "layered_stiffness", "plastic_set"] } else { &[] }
+    fn builds_on(&self, form: usize) -> &'static [Foundation] {
+        const LAWS: [Foundation; 3] = [
+            Foundation::any_form("nonlinear_stiffness"),
+            Foundation::any_form("layered_stiffness"),
+            Foundation::any_form("plastic_set"),
+        ];
+        if form >= 3 { &LAWS } else { &[] }
     }
 
     fn simpler(&self, form: usize, values: &[f64], stiffness: f64) -> Option<(usize, Vec<f64>)> {
