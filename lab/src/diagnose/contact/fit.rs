@@ -23,6 +23,8 @@ pub struct Fit {
 pub struct Effort(pub usize);
 
 impl Effort {
+    /// None: the values stay.
+    pub const NONE: Self = Self(0);
     /// Enough to compare one start with another.
     pub const QUICK: Self = Self(4);
     /// To the end.

@@ -10,7 +10,7 @@ use super::fit::{Effort, Fit};
 use super::held_out::Folds;
 use super::model::index;
 use super::rest::Rest;
-use super::search::{MOST_TERMS, Search};
+use super::search::Search;
 use super::worth::free;
 use crate::diagnose::term::Term;
 
@@ -88,7 +88,7 @@ impl Search<'_> {
 
     /// `fit` with one more effect that stands beside it.
     fn one_more(&self, fit: &Fit) -> Option<Fit> {
-        if fit.model.terms.len() >= MOST_TERMS + self.nominal.model.terms.len() {
+        if !self.has_room(fit, 1) {
             return None;
         }
         let grown = self.polished(self.grown(fit));

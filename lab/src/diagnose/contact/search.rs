@@ -39,6 +39,11 @@ impl Search<'_> {
             && (!falls(fit) || falls(&self.nominal))
     }
 
+    /// Whether `fit` with so many effects `more` holds no more than [`MOST_TERMS`].
+    pub(super) fn has_room(&self, fit: &Fit, more: usize) -> bool {
+        fit.model.terms.len() + more <= MOST_TERMS + self.nominal.model.terms.len()
+    }
+
     /// Whether the recordings cannot distinguish the laws of two sets of effects, whatever they leave: at one speed each way and
     /// without a hold a Maxwell branch, `branch_stiffness v relaxation_time (1 - exp(-t / relaxation_time))` after a reversal, is Dahl's
     /// loop over `v t`, and a force that is late by a time is that of a tip that lags by a way.

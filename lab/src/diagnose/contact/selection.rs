@@ -30,7 +30,7 @@ impl Search<'_> {
         let mut sets: Vec<Fit> = Vec::new();
         let mut composed = Vec::new();
         let mut waiting = 0;
-        for round in 0..MOST_TERMS + 1 {
+        for round in 0..=MOST_TERMS {
             say(&format!("the contact: {}; one effect more", self.so_far(&best)));
             let mut grown = if round == 0 { self.seen_layers() } else { Vec::new() };
             for base in &beam {
@@ -42,7 +42,7 @@ impl Search<'_> {
             // At one speed a memory is a loop: what it multiplies cannot be told.
             let heads = if self.circumstances.is_one_speed { 0 } else { BEAM.min(grown.len()) };
             let anew = self.composed(&grown[..heads], &mut composed);
-            grown.extend(anew.into_iter().filter(|fit| self.is_admissible(fit)));
+            grown.extend(anew.into_iter().filter(|fit| self.is_admissible(fit) && self.has_room(fit, 0)));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             let Some(least) = grown.first() else { break };
             let rest = Rest::of(&self.data, least);
@@ -62,9 +62,9 @@ impl Search<'_> {
             if waiting > 1 || is_at_noise {
                 break;
             }
-            let grown = grown.iter().filter(|fit| fit.model.terms.len() <= MOST_TERMS).take(BEAM);
+            let grown = grown.iter().filter(|fit| self.has_room(fit, 1)).take(BEAM);
             beam = grown.map(|fit| if waiting == 0 { self.data.again(fit) } else { fit.clone() }).collect();
-            if waiting == 0 && beam.iter().all(|fit| fit.model != best.model) {
+            if waiting == 0 && self.has_room(&best, 1) && beam.iter().all(|fit| fit.model != best.model) {
                 beam.truncate(BEAM - 1);
                 beam.push(best.clone());
             }

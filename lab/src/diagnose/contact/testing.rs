@@ -117,9 +117,14 @@ impl TestContact {
 
     /// `recording` as the model sees it.
     pub fn seen(recording: &Recording) -> ContactTrial {
+        Self::seen_in_means(recording, 1)
+    }
+
+    /// The same in means of `every` rows.
+    pub fn seen_in_means(recording: &Recording, every: usize) -> ContactTrial {
         let channel = |noise: f64| Channel { resolution: 0.0, noise };
         let figures = Figures { position: channel(POSITION_NOISE), force: Some(channel(FORCE_NOISE)), effort: None };
-        ContactTrial::new(recording, figures, 1).unwrap()
+        ContactTrial::new(recording, figures, every).unwrap()
     }
 
     /// The law of this contact with the effect `name` by its form `form`, and its values with `own` for the effect.
