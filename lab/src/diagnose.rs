@@ -20,6 +20,7 @@ pub mod linalg;
 pub mod local_level;
 pub mod median;
 pub mod model_comparison;
+pub mod periodogram;
 pub mod phase;
 pub mod report;
 pub mod signals;

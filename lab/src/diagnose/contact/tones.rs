@@ -1,12 +1,12 @@
 //! Which frequencies of a form that repeats are worth a trial: those at which the residual itself is loudest (Lomb's periodogram).
 
-use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 use super::criteria::LINE_TOLERANCE;
 use super::data::Data;
 use super::fit::Fit;
 use super::in_step::is_in_step;
+use crate::diagnose::periodogram::periodogram;
 use crate::effects::{FrequencySearch, Start, ToneWeight};
 
 /// Frequencies that are tried.
@@ -64,15 +64,35 @@ pub fn line_nats(data: &Data<'_>, rest: &[f64], frequency: f64) -> f64 {
     -chance.max(f64::MIN_POSITIVE).ln()
 }
 
-/// Time, weight and residual of each row that counts, a list a trial: each has a phase of its own.
-struct Rows(Vec<Vec<(f64, f64, f64)>>);
+/// What is listened to of one trial.
+struct Heard {
+    /// Time of each row that counts, and its residual times its weight.
+    rows: Vec<(f64, f64)>,
+    /// Squares of the weights.
+    square: f64,
+}
+
+impl Heard {
+    /// Of rows with time, weight and residual.
+    fn of(rows: impl Iterator<Item = (f64, f64, f64)>) -> Self {
+        let mut square = 0.0;
+        let weighed = rows.filter(|(_, weight, _)| *weight != 0.0).map(|(time, weight, rest)| {
+            square += weight * weight;
+            (time, weight * rest)
+        });
+        Self { rows: weighed.collect(), square }
+    }
+}
+
+/// The trials, one after another: each has a phase of its own.
+struct Rows(Vec<Heard>);
 
 impl Rows {
     fn of(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f64]) -> Self {
         let starts = data.starts();
         let trial = |number: usize| {
             let (trial, surface) = (&data.trials[number], fit.model.surface(&fit.values, number));
-            let row = |row: usize| {
+            Heard::of((0..trial.len()).map(|row| {
                 let depth = trial.position[row] - surface;
                 let inside = fit.model.bilateral || depth > 0.0;
                 let weight = match search.weight {
@@ -81,8 +101,7 @@ impl Rows {
                     ToneWeight::Depth => f64::from(inside) * depth,
                 };
                 (trial.time[row], weight * data.weights[number][row], rest[starts[number] + row])
-            };
-            (0..trial.len()).map(row).filter(|(_, weight, _)| *weight != 0.0).collect::<Vec<_>>()
+            }))
         };
         Self((0..data.trials.len()).map(trial).collect())
     }
@@ -91,11 +110,10 @@ impl Rows {
     fn windowed(data: &Data<'_>, rest: &[f64]) -> Self {
         let trial = |(trial, start): (&super::trial::ContactTrial, usize)| {
             let turn = std::f64::consts::TAU / trial.len().max(1) as f64;
-            let row = |row: usize| {
+            Heard::of((0..trial.len()).map(|row| {
                 let window = 0.5 - 0.5 * (turn * (row as f64 + 0.5)).cos();
                 (trial.time[row], window, rest[start + row])
-            };
-            (0..trial.len()).map(row).collect()
+            }))
         };
         Self(data.trials.iter().zip(data.starts()).map(trial).collect())
     }
@@ -107,38 +125,13 @@ impl Rows {
 
     /// What waves of `count` frequencies take, the first `first` and each `apart` from the one before, Hz.
     fn spectrum(&self, first: f64, apart: f64, count: usize) -> Vec<f64> {
-        let starts: Vec<usize> = (0..count).step_by(TURNS).collect();
-        let part = |start: &usize| {
-            let mut power = vec![0.0; TURNS.min(count - start)];
-            let frequency = first + apart * *start as f64;
-            self.0.iter().for_each(|rows| add_powers(rows, frequency, apart, &mut power));
-            power
-        };
-        starts.par_iter().flat_map(part).collect()
-    }
-}
-
-/// Frequencies that are reached by turning each row's wave on from the one before: rounding adds up over them.
-const TURNS: usize = 64;
-
-/// Adds to each of `power` what `rows` hold of waves from `frequency` on, each `apart` from the one before.
-fn add_powers(rows: &[(f64, f64, f64)], frequency: f64, apart: f64, power: &mut [f64]) {
-    let square: f64 = rows.iter().map(|(_, weight, _)| weight * weight).sum();
-    let wave = |frequency: f64| {
-        let pulse = std::f64::consts::TAU * frequency;
-        rows.iter().map(move |(time, ..)| (pulse * time).sin_cos())
-    };
-    let mut waves: Vec<(f64, f64)> = wave(frequency).collect();
-    let turns: Vec<(f64, f64)> = wave(apart).collect();
-    for power in power {
-        let (mut sine, mut cosine) = (0.0, 0.0);
-        for ((row, wave), turn) in rows.iter().zip(&mut waves).zip(&turns) {
-            let signal = row.1 * row.2;
-            sine += signal * wave.0;
-            cosine += signal * wave.1;
-            *wave = (wave.0 * turn.1 + wave.1 * turn.0, wave.1 * turn.1 - wave.0 * turn.0);
+        let mut all = vec![0.0; count];
+        for trial in &self.0 {
+            let own = periodogram(&trial.rows, first, apart, count);
+            let scale = 2.0 / trial.square.max(f64::MIN_POSITIVE);
+            all.iter_mut().zip(own).for_each(|(all, own)| *all += scale * own);
         }
-        *power += 2.0 * (sine * sine + cosine * cosine) / f64::max(square, f64::MIN_POSITIVE);
+        all
     }
 }
 
@@ -146,42 +139,21 @@ fn add_powers(rows: &[(f64, f64, f64)], frequency: f64, apart: f64, power: &mut 
 mod tests {
     use super::*;
 
-    /// Two trials of rows that are not evenly spaced, with two waves of other phases and a weight of their own.
-    fn rows() -> Rows {
-        let trial = |phase: f64| {
-            let row = |at: usize| {
-                let at = at as f64;
-                let time = 0.01 * at + 1e-3 * (1.7 * at).sin();
-                (time, 1.0 + 0.3 * (0.9 * at).cos(), (7.0 * time + phase).sin() + 0.4 * (31.0 * time - phase).cos())
-            };
-            (0..900).map(row).collect()
-        };
-        Rows(vec![trial(0.3), trial(1.1)])
-    }
-
+    /// Of a wave under weights that are its own, half of the weights' squares times that of its size, whatever its phase.
     #[test]
-    fn a_spectrum_is_at_each_frequency_what_a_wave_of_it_takes() {
-        let (rows, count) = (rows(), 200);
-        let spectrum = rows.spectrum(0.2, 0.05, count);
-        let directly = |frequency: f64| {
-            let trial = |rows: &Vec<(f64, f64, f64)>| {
-                let sum = |wave: fn(f64) -> f64| {
-                    let each = rows
-                        .iter()
-                        .map(|(time, weight, rest)| weight * rest * wave(std::f64::consts::TAU * frequency * time));
-                    each.sum::<f64>()
-                };
-                let square: f64 = rows.iter().map(|(_, weight, _)| weight * weight).sum();
-                2.0 * (sum(f64::sin).powi(2) + sum(f64::cos).powi(2)) / square
+    fn a_wave_takes_half_of_its_square_times_those_of_the_weights_in_each_trial() {
+        let (size, frequency) = (0.3, 4.0);
+        let trial = |phase: f64| {
+            let row = |at: i32| {
+                let (time, weight) = (1e-3 * f64::from(at), 2.0);
+                (time, weight, weight * size * (std::f64::consts::TAU * frequency * time + phase).sin())
             };
-            rows.0.iter().map(trial).sum::<f64>()
+            Heard::of((0..1000).map(row))
         };
-        assert_eq!(spectrum.len(), count);
-        let loudest = spectrum.iter().fold(0.0f64, |most, power| most.max(*power));
-        // 64 turns of a rounding each, over sums of 900 rows.
-        for (at, power) in spectrum.iter().enumerate() {
-            let direct = directly(0.2 + 0.05 * at as f64);
-            assert!((power - direct).abs() < 1e-12 * loudest, "{at}: {power} {direct}");
-        }
+        let rows = Rows(vec![trial(0.2), trial(1.9)]);
+        let taken = 2.0 * 0.5 * (1000.0 * 2.0 * 2.0) * size * size;
+        // Four whole periods: sums of sines and cosines of twice the frequency vanish.
+        assert!((rows.power(frequency) - taken).abs() < 1e-9 * taken, "{} {taken}", rows.power(frequency));
+        assert!(rows.power(2.0 * frequency) < 1e-9 * taken);
     }
 }

@@ -1,7 +1,5 @@
 //! Which terms are tried beside a model, and from where their search starts.
 
-use rayon::prelude::*;
-
 use super::criteria::{LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_SHARE};
 use super::fit::{Effort, Fit, fit};
 use super::likelihood::Data;
@@ -11,6 +9,7 @@ use super::ripples::ripples;
 use super::scales::Scales;
 use super::term::{Term, wavenumber};
 use super::trial::DriveTrial;
+use crate::diagnose::periodogram::periodogram;
 
 /// A term and the values that its search starts from.
 pub struct Candidate {
@@ -222,18 +221,9 @@ fn repeating_pitches(data: &Data<'_>, scales: &Scales, disturbance: &[Vec<f64>])
         .collect();
     let (first, spacing) = (2.0 / scales.travel, 0.4 / scales.travel);
     let lines = ((1.0 / finest - first) / spacing).clamp(0.0, MOST_PITCHES) as usize;
-    let power: Vec<(f64, f64)> = (0..lines)
-        .into_par_iter()
-        .map(|line| {
-            let pitch = 1.0 / (first + line as f64 * spacing);
-            let turn = wavenumber(pitch);
-            let (sine, cosine) = centred.iter().fold((0.0, 0.0), |(sine, cosine), (position, force)| {
-                let (s, c) = (turn * position).sin_cos();
-                (sine + force * s, cosine + force * c)
-            });
-            (pitch, sine * sine + cosine * cosine)
-        })
-        .collect();
+    let powers = periodogram(&centred, first, spacing, lines);
+    let pitches = (0..lines).map(|line| 1.0 / (first + line as f64 * spacing));
+    let power: Vec<(f64, f64)> = pitches.zip(powers).collect();
     let mut peaks: Vec<(f64, f64)> =
         power.windows(3).filter(|w| w[1].1 >= w[0].1 && w[1].1 > w[2].1).map(|w| w[1]).collect();
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
