@@ -68,6 +68,12 @@ impl ExcitationStats {
         self.free_span * self.duration > 10.0 * self.step
     }
 
+    /// Greatest pull in `forces`, in size; zero where none pulls.
+    #[must_use]
+    pub fn greatest_pull<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
+        forces.fold(0.0, |most, force| most.max(-force))
+    }
+
     /// Whether the effect of time can be separated from that of depth: only where the same depth was visited again.
     #[must_use]
     pub fn separates_time_from_depth(&self) -> bool {

@@ -174,11 +174,7 @@ fn excitation_stats(rig: &Rig, trials: &[Recording]) -> ExcitationStats {
         speed,
         acceleration: speed * std::f64::consts::TAU,
         force: peak(|trial| trial.force.as_ref()),
-        pull: trials
-            .iter()
-            .filter_map(|trial| trial.force.as_ref())
-            .flatten()
-            .fold(0.0, |most, force| most.max(-force)),
+        pull: ExcitationStats::greatest_pull(trials.iter().filter_map(|trial| trial.force.as_ref()).flatten()),
         effort: peak(|trial| trial.effort.as_ref()),
         travel: (low, high),
         duration,

@@ -28,7 +28,7 @@ impl Search<'_> {
                     let mut names = sorted_names(&bare.model);
                     names.extend([lower, upper_name]);
                     let question = (names, fit.model.own);
-                    if !asked.contains(&question) {
+                    if self.has_room(&bare, 2) && !asked.contains(&question) {
                         composed.extend(self.composed_on(&bare, lower, &fit.model.terms[upper]));
                         asked.push(question);
                     }

@@ -95,13 +95,12 @@ impl Scales {
         let squares = trials.iter().flat_map(|trial| &trial.acceleration).map(|value| value * value).sum::<f64>();
         let rows: usize = trials.iter().map(ContactTrial::len).sum();
         let force = trials.iter().flat_map(|trial| &trial.force).fold(0.0f64, |most, force| most.max(force.abs()));
-        let pull = trials.iter().flat_map(|trial| &trial.force).fold(0.0f64, |most, force| most.max(-force));
         ExcitationStats {
             depth: self.depth,
             speed: self.speed,
             acceleration: (squares / rows.max(1) as f64).sqrt(),
             force,
-            pull,
+            pull: ExcitationStats::greatest_pull(trials.iter().flat_map(|trial| &trial.force)),
             effort: 0.0,
             travel: (self.positions[0], self.positions[1]),
             duration: self.duration_s,

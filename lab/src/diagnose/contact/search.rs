@@ -85,3 +85,27 @@ pub(super) fn sorted_names(model: &ContactModel) -> Vec<&'static str> {
     names.sort_unstable();
     names
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::nominal::nominal_fit;
+    use super::super::testing::TestContact;
+    use super::*;
+    use crate::diagnose::term::Term;
+
+    #[test]
+    fn beside_what_the_rig_file_holds_there_is_room_for_four_effects() {
+        let trials = [TestContact::PLAIN.trial(1)];
+        let data = || Data::new(&trials);
+        let mut nominal = nominal_fit(&data(), &TestContact::nominal());
+        let bias = Term { effect: crate::effects::find("force_bias").unwrap(), form: 0 };
+        nominal.model = nominal.model.with(bias);
+        let search =
+            Search { nominal: nominal.clone(), data: data(), coarse: data(), circumstances: Circumstances::default() };
+        let mut fit = nominal;
+        for room in (0..=4).rev() {
+            assert!(search.has_room(&fit, room) && !search.has_room(&fit, room + 1), "room for {room}");
+            fit.model = fit.model.with(bias);
+        }
+    }
+}

@@ -42,7 +42,7 @@ impl Search<'_> {
             // At one speed a memory is a loop: what it multiplies cannot be told.
             let heads = if self.circumstances.is_one_speed { 0 } else { BEAM.min(grown.len()) };
             let anew = self.composed(&grown[..heads], &mut composed);
-            grown.extend(anew.into_iter().filter(|fit| self.is_admissible(fit) && self.has_room(fit, 0)));
+            grown.extend(anew.into_iter().filter(|fit| self.is_admissible(fit)));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
             let Some(least) = grown.first() else { break };
             let rest = Rest::of(&self.data, least);
