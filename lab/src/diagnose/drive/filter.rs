@@ -44,7 +44,8 @@ mod tests {
         let drive = TestDrive { disturbance: 1e-4, ..TestDrive::PLAIN };
         let trial = drive.trial(8.0, 3);
         let pass = innovations(&trial, &DriveLaw::nominal(0.8, 4.0, 0.0), &noise(&drive), false);
-        let white: Vec<f64> = pass.innovation.iter().zip(&pass.variance).skip(20).map(|(e, s)| e / s.sqrt()).collect();
+        let white: Vec<f64> =
+            pass.innovation.iter().zip(pass.variance.iter()).skip(20).map(|(e, s)| e / s.sqrt()).collect();
         let count = white.len() as f64;
         let power = white.iter().map(|w| w * w).sum::<f64>() / count;
         let next = white.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / count;

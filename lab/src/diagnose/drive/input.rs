@@ -1,21 +1,23 @@
 //! What acts on the drive between two encoder rows: means of held and of sampled signals, early or late by any time.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::law::DriveLaw;
 use super::trial::DriveTrial;
 
-/// Mean effort and mean contact force over the interval that ends at each encoder row, N or N m. Row 0 holds nothing.
+/// Mean effort and mean contact force over the interval that ends at each encoder row, N or N m. Row 0 holds nothing. Laws share what they have
+/// alike.
 #[derive(Debug, Clone)]
 pub struct Inputs {
     /// Effort that acts on the motor, less the load that is known.
-    pub effort: Vec<f64>,
+    pub effort: Arc<Vec<f64>>,
     /// Force with which the tool pushes on what it touches; zero where none is recorded.
-    pub force: Vec<f64>,
+    pub force: Arc<Vec<f64>>,
     /// The load that is known; zero where none is given.
-    pub load: Vec<f64>,
+    pub load: Arc<Vec<f64>>,
 }
 
 impl Inputs {
@@ -28,8 +30,8 @@ impl Inputs {
     /// The same with the force of `other` on top.
     #[must_use]
     pub fn with_force(&self, other: &Self) -> Self {
-        let force = self.force.iter().zip(&other.force).map(|(force, other)| force + other).collect();
-        Self { effort: self.effort.clone(), force, load: self.load.clone() }
+        let force = self.force.iter().zip(other.force.iter()).map(|(force, other)| force + other).collect();
+        Self { force: Arc::new(force), ..self.clone() }
     }
 
     /// What the transmission bears over the interval that ends at `row`: the contact's force and the load, N or N m. Friction that grows with
@@ -39,51 +41,57 @@ impl Inputs {
         self.force[row] + self.load[row]
     }
 
-    /// Whether they are the same under `one` and `other`: actuator, force sensor and the load's factor are.
-    #[must_use]
-    pub fn are_alike(one: &DriveLaw, other: &DriveLaw) -> bool {
-        let of = |law: &DriveLaw| {
-            [
-                law.effort_delay_s,
-                law.effort_averaging,
-                law.effort_lag_s,
-                law.load_scale,
-                law.force_gain_error,
-                law.force_delay_s,
-            ]
-        };
-        of(one) == of(other) && one.limit == other.limit
-    }
-
     /// The inputs of `trial` under the actuator and the force sensor of `law`.
     #[must_use]
     pub fn of(trial: &DriveTrial, law: &DriveLaw) -> Self {
-        let acting =
-            unaveraged(&trial.source_time, &trial.effort, law.effort_averaging * trial.recorded_period_s.powi(2));
-        let limited = acting.iter().map(|effort| law.limit.passed(*effort));
-        let held = Integral::held(&trial.source_time, limited);
-        let mut effort = held.means(&trial.time, -law.effort_delay_s);
-        if law.effort_lag_s > 0.0 {
-            held.lag(&mut effort, &trial.time, -law.effort_delay_s, law.effort_lag_s);
-        }
-        let load = trial.load.as_ref().map_or_else(
-            || vec![0.0; trial.len()],
-            |load| {
-                let scaled = load.iter().map(|load| law.load_scale * load);
-                Integral::sampled(&trial.source_time, scaled).means(&trial.time, 0.0)
-            },
-        );
-        effort.iter_mut().zip(&load).for_each(|(effort, load)| *effort -= load);
-        let force = trial.force.as_ref().map_or_else(
-            || vec![0.0; trial.len()],
-            |force| {
-                let gain = 1.0 + law.force_gain_error;
-                let sampled = Integral::sampled(&trial.source_time, force.iter().map(|force| force / gain));
-                sampled.means(&trial.time, law.force_delay_s)
-            },
-        );
-        Self { effort, force, load }
+        let load = Arc::new(load_of(trial, law));
+        Self { effort: Arc::new(effort_of(trial, law, &load)), force: Arc::new(force_of(trial, law)), load }
     }
+
+    /// The inputs of `trial` under `law`, where these are those under `before`.
+    #[must_use]
+    pub fn under(&self, trial: &DriveTrial, before: &DriveLaw, law: &DriveLaw) -> Self {
+        let actuator = |law: &DriveLaw| [law.effort_delay_s, law.effort_averaging, law.effort_lag_s, law.load_scale];
+        let sensor = |law: &DriveLaw| [law.force_gain_error, law.force_delay_s];
+        let is_same_effort = actuator(law) == actuator(before) && law.limit == before.limit;
+        let or_else = |is_same: bool, own: &Arc<Vec<f64>>, new: &dyn Fn() -> Vec<f64>| {
+            if is_same { Arc::clone(own) } else { Arc::new(new()) }
+        };
+        let load = or_else(law.load_scale == before.load_scale, &self.load, &|| load_of(trial, law));
+        Self {
+            effort: or_else(is_same_effort, &self.effort, &|| effort_of(trial, law, &load)),
+            force: or_else(sensor(law) == sensor(before), &self.force, &|| force_of(trial, law)),
+            load,
+        }
+    }
+}
+
+/// Effort of `trial` through the actuator of `law`, less the `load` that is known.
+fn effort_of(trial: &DriveTrial, law: &DriveLaw, load: &[f64]) -> Vec<f64> {
+    let acting = unaveraged(&trial.source_time, &trial.effort, law.effort_averaging * trial.recorded_period_s.powi(2));
+    let limited = acting.iter().map(|effort| law.limit.passed(*effort));
+    let held = Integral::held(&trial.source_time, limited);
+    let mut effort = held.means(&trial.time, -law.effort_delay_s);
+    if law.effort_lag_s > 0.0 {
+        held.lag(&mut effort, &trial.time, -law.effort_delay_s, law.effort_lag_s);
+    }
+    effort.iter_mut().zip(load).for_each(|(effort, load)| *effort -= load);
+    effort
+}
+
+/// Load that is known of `trial`, times the factor of `law`.
+fn load_of(trial: &DriveTrial, law: &DriveLaw) -> Vec<f64> {
+    let Some(load) = &trial.load else { return vec![0.0; trial.len()] };
+    let scaled = load.iter().map(|load| law.load_scale * load);
+    Integral::sampled(&trial.source_time, scaled).means(&trial.time, 0.0)
+}
+
+/// Contact force of `trial` as it acts, where the sensor of `law` recorded it.
+fn force_of(trial: &DriveTrial, law: &DriveLaw) -> Vec<f64> {
+    let Some(force) = &trial.force else { return vec![0.0; trial.len()] };
+    let gain = 1.0 + law.force_gain_error;
+    let sampled = Integral::sampled(&trial.source_time, force.iter().map(|force| force / gain));
+    sampled.means(&trial.time, law.force_delay_s)
 }
 
 /// What `averaged`, recorded at `time`, was before a drive took its means: the record less `spread` times its second derivative, the first term
@@ -220,6 +228,7 @@ const MOST_UNEVEN: f64 = 2.5;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::drive::effort_limit::EffortLimit;
 
     #[test]
     fn a_held_signal_that_is_late_by_a_quarter_of_a_row_is_mixed_of_both() {
@@ -306,5 +315,34 @@ mod tests {
             let mean = all[4 * row - 3..=4 * row].iter().sum::<f64>() / 4.0;
             assert!((few[row] - mean).abs() < 1e-12, "{} {mean}", few[row]);
         }
+    }
+
+    /// Of a law that differs in one thing, only what that touches is computed, and all of it is what the law has by itself.
+    #[test]
+    fn what_two_laws_have_alike_is_shared_and_the_rest_is_the_laws_own() {
+        let (time, effort) = pulse();
+        let position = vec![0.0; time.len()];
+        let force = time.iter().map(|t| (9.0 * t).sin()).collect();
+        let mut trial = DriveTrial::new("trial".to_owned(), time.clone(), &position, effort, Some(force), 1);
+        trial.load = Some(time.iter().map(|t| t * t).collect());
+        let before = DriveLaw::nominal(1.0, 0.0, 0.0);
+        let inputs = Inputs::of(&trial, &before);
+        let changed = |change: &dyn Fn(&mut DriveLaw)| {
+            let mut law = before.clone();
+            change(&mut law);
+            let (shared, own) = (inputs.under(&trial, &before, &law), Inputs::of(&trial, &law));
+            assert_eq!([&shared.effort, &shared.force, &shared.load], [&own.effort, &own.force, &own.load]);
+            [(&shared.effort, &inputs.effort), (&shared.force, &inputs.force), (&shared.load, &inputs.load)]
+                .map(|(shared, before)| Arc::ptr_eq(shared, before))
+        };
+        assert_eq!(changed(&|law| law.inertia = 2.0), [true, true, true]);
+        assert_eq!(changed(&|law| law.effort_delay_s = 3e-3), [false, true, true]);
+        assert_eq!(changed(&|law| law.effort_averaging = 0.2), [false, true, true]);
+        assert_eq!(changed(&|law| law.effort_lag_s = 0.02), [false, true, true]);
+        assert_eq!(changed(&|law| law.limit = EffortLimit::Sharp(2.0)), [false, true, true]);
+        assert_eq!(changed(&|law| law.force_gain_error = 0.1), [true, false, true]);
+        assert_eq!(changed(&|law| law.force_delay_s = 3e-3), [true, false, true]);
+        // The effort is told less the load.
+        assert_eq!(changed(&|law| law.load_scale = 0.9), [false, true, false]);
     }
 }

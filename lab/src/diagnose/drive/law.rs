@@ -162,7 +162,7 @@ impl DriveLaw {
         let level = |speed: f64| friction_factor * self.friction.level(speed, borne);
         let mut left = step;
         for _ in 0..TURNS_PER_ROW {
-            let Some(direction) = Self::direction(velocity, push, level(0.0)) else { return [position, 0.0] };
+            let Some(direction) = Self::direction(velocity, push, || level(0.0)) else { return [position, 0.0] };
             let rate = |speed: f64| {
                 let against = direction * level(speed.abs()) + viscous * speed;
                 (push - against) / inertia
@@ -184,12 +184,12 @@ impl DriveLaw {
         [position, 0.0]
     }
 
-    /// Which way the body goes; `None` where friction `holds` it.
-    fn direction(velocity: f64, push: f64, holds: f64) -> Option<f64> {
+    /// Which way the body goes; `None` where friction holds it at rest, up to what it `holds`.
+    fn direction(velocity: f64, push: f64, holds: impl FnOnce() -> f64) -> Option<f64> {
         if velocity != 0.0 {
             return Some(velocity.signum());
         }
-        (push.abs() > holds).then(|| push.signum())
+        (push.abs() > holds()).then(|| push.signum())
     }
 }
 

@@ -66,10 +66,15 @@ impl Data<'_> {
     #[must_use]
     pub fn profiled(&self, passes: &[Innovations], noise: &Noise) -> (f64, f64) {
         let (mut rows, mut squares, mut logs) = (0usize, 0.0, 0.0);
+        // A filter that has settled has one variance for thousands of rows.
+        let (mut latest, mut ln_latest) = (1.0, 0.0);
         self.scored(passes, |innovation, variance| {
+            if variance != latest {
+                (latest, ln_latest) = (variance, variance.ln());
+            }
             rows += 1;
             squares += innovation * innovation / variance;
-            logs += variance.ln();
+            logs += ln_latest;
         });
         let count = rows.max(1) as f64;
         let scale = (squares / count).max(self.least_encoder_variance / noise.encoder());

@@ -57,8 +57,9 @@ impl<'a> Linearisation<'a> {
     #[must_use]
     pub fn passes(&self, values: &[f64]) -> Vec<Innovations> {
         let law = self.model.law(values);
-        let own = (!Inputs::are_alike(&law, &self.law)).then(|| Inputs::of_all(self.data.trials, &law));
-        self.under(own.as_ref().unwrap_or(&self.inputs), &law)
+        let each = self.data.trials.par_iter().zip(&self.inputs);
+        let inputs: Vec<Inputs> = each.map(|(trial, inputs)| inputs.under(trial, &self.law, &law)).collect();
+        self.under(&inputs, &law)
     }
 
     /// Innovations under `law` with its `inputs`.
@@ -122,6 +123,10 @@ impl<'a> Linearisation<'a> {
             if moved[at] > range.high {
                 difference = -difference;
                 moved[at] = range.moved(values[at], difference);
+            }
+            if self.model.law(&moved) == self.law {
+                // As the factor of a load that is not given.
+                return vec![0.0; self.innovations.len()];
             }
             let after = self.data.standardised(&self.passes(&moved), &self.base);
             after.iter().zip(&self.innovations).map(|(after, before)| (after - before) / difference).collect()

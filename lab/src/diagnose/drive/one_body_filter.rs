@@ -3,6 +3,8 @@
 //! One body has a linear covariance, so its Kalman gains are those of mass, viscous friction and disturbance; friction at rest and
 //! position-dependent loads act on the mean alone (innovations form, Ljung, *System Identification*, 1999, section 4.3).
 
+use std::sync::Arc;
+
 use super::course::Varying;
 use super::innovations::Innovations;
 use super::input::Inputs;
@@ -16,7 +18,7 @@ use super::trial::DriveTrial;
 #[derive(Debug, Clone, Default)]
 pub struct Gains {
     gain: Vec<[f64; 2]>,
-    variance: Vec<f64>,
+    variance: Arc<Vec<f64>>,
 }
 
 /// Rows over which the gain has to stand before it is taken as steady, and its relative change.
@@ -28,7 +30,8 @@ impl Gains {
     #[must_use]
     pub fn of(trial: &DriveTrial, law: &DriveLaw, noise: &Noise) -> Self {
         let encoder = noise.encoder();
-        let mut gains = Self { gain: vec![[0.0; 2]; trial.len()], variance: vec![encoder; trial.len()] };
+        let mut gains = vec![[0.0; 2]; trial.len()];
+        let mut variances = vec![encoder; trial.len()];
         let fastest = trial.fastest();
         let mut covariance = [[0.0; 2]; 2];
         let (mut transition, mut driving) = (covariance, covariance);
@@ -46,8 +49,8 @@ impl Gains {
                 (last_step, steady) = (step, 0);
             }
             if steady >= STEADY_ROWS {
-                gains.gain[row] = gains.gain[row - 1];
-                gains.variance[row] = gains.variance[row - 1];
+                gains[row] = gains[row - 1];
+                variances[row] = variances[row - 1];
                 continue;
             }
             let predicted = propagated(&transition, &covariance, &driving);
@@ -56,13 +59,13 @@ impl Gains {
             for (line, factor) in covariance.iter_mut().zip(predicted.iter().zip(gain)) {
                 *line = std::array::from_fn(|column| factor.0[column] - factor.1 * predicted[0][column]);
             }
-            let before = gains.gain[row - 1];
+            let before = gains[row - 1];
             let stands = gain.iter().zip(before).all(|(new, old)| (new - old).abs() <= STEADY_CHANGE * new.abs());
             steady = if stands { steady + 1 } else { 0 };
-            gains.gain[row] = gain;
-            gains.variance[row] = variance;
+            gains[row] = gain;
+            variances[row] = variance;
         }
-        gains
+        Self { gain: gains, variance: Arc::new(variances) }
     }
 }
 
@@ -95,8 +98,7 @@ pub fn one_body(
 ) -> Innovations {
     let rows = trial.len();
     let mut out =
-        Innovations { innovation: vec![0.0; rows], variance: gains.variance.clone(), ..Innovations::default() };
-    out.velocity = vec![0.0; rows];
+        Innovations { innovation: vec![0.0; rows], variance: Arc::clone(&gains.variance), ..Innovations::default() };
     let inertia = if trial.force.is_some() { law.inertia - law.tool_inertia } else { law.inertia };
     let (mut state, mut slips) = ([0.0; 2], Slips::default());
     for row in 0..rows {
@@ -120,7 +122,6 @@ pub fn one_body(
             law.friction.follow(&mut slips, gain[0] * innovation);
             out.innovation[row] = innovation;
         }
-        out.velocity[row] = state[1];
     }
     if smooth {
         out.disturbance = smoothed_one(trial, law, noise, gains, &out);

@@ -2,6 +2,7 @@
 //! coupled pair.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::innovations::Innovations;
 use super::input::Inputs;
@@ -75,18 +76,14 @@ pub fn two_bodies(
     let rows = trial.len();
     let encoder = noise.encoder();
     let measured = if link.encoder == Side::Load { 2 } else { 0 };
-    let mut out = Innovations {
-        innovation: vec![0.0; rows],
-        variance: vec![encoder; rows],
-        velocity: vec![0.0; rows],
-        ..Innovations::default()
-    };
+    let mut out = Innovations { innovation: vec![0.0; rows], ..Innovations::default() };
+    let mut variances = vec![encoder; rows];
     let densities = densities(noise, link.encoder, trial.force_density);
     let mut pairs = Pairs::default();
     let mut history: Vec<PairRow> = Vec::with_capacity(if smooth { rows } else { 0 });
     let (mut state, mut slips) = ([0.0; STATES], Slips::default());
     let mut uncertainty = Uncertainty::default();
-    for row in 0..rows {
+    for (row, seen) in variances.iter_mut().enumerate() {
         if trial.restart[row] {
             let (position, rate) = (trial.position[row], trial.rate_after(row));
             state = [position, rate, position, rate];
@@ -98,7 +95,6 @@ pub fn two_bodies(
                 let spread = of_stretch(&uncertainty.covariance);
                 history.push(PairRow { gain: [0.0; STATES], coupled: true, pair: 0, stretch: 0.0, spread });
             }
-            out.velocity[row] = rate;
             continue;
         }
         let step = trial.time[row] - trial.time[row - 1];
@@ -115,12 +111,13 @@ pub fn two_bodies(
         let innovation = trial.position[row] - state[measured];
         state.iter_mut().zip(gain).for_each(|(state, gain)| *state += gain * innovation);
         law.friction.follow(&mut slips, gain[0] * innovation);
-        (out.innovation[row], out.variance[row], out.velocity[row]) = (innovation, variance, state[measured + 1]);
+        (out.innovation[row], *seen) = (innovation, variance);
         if smooth {
             let (stretch, spread) = (state[0] - state[2], of_stretch(&uncertainty.covariance));
             history.push(PairRow { gain, coupled, pair: at, stretch, spread });
         }
     }
+    out.variance = Arc::new(variances);
     if smooth {
         [out.disturbance, out.residual, out.stretch] = smoothed_pair(trial, &link, noise, &out, &history, &pairs.all);
     }
