@@ -9,8 +9,8 @@
 //! [`course`], [`curve`], [`presliding`], [`two_mass_system`] and [`noise`] the equations.
 //! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
 //! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
-//! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`], [`links`] and [`selection`] choose what stands beside it by
-//! its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`],
+//! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`] on a [`sample`] of the rows, by [`growth`], [`links`] and
+//! [`selection`] choose what stands beside it by its [`worth`] and the [`criteria`]. [`held_out`] by [`halves`], [`interval`], [`validation`], [`lack_of_fit`], [`tone`],
 //! [`noise_at_rest`], [`asymmetric_friction`] and [`alternatives`] are the evidence, of which
 //! [`judgement`] makes the [`outcome`]; [`outside_force`] finds stretches in which something else pushes, and [`identification`] is the
 //! way from trials to the answer.
@@ -27,6 +27,7 @@ pub mod effort_limit;
 pub mod expected_noise;
 pub mod filter;
 pub mod fit;
+pub mod growth;
 pub mod halves;
 pub mod held_out;
 pub mod identification;
@@ -57,6 +58,7 @@ pub mod presliding;
 pub mod pruning;
 pub mod range;
 pub mod ripples;
+pub mod sample;
 pub mod scales;
 pub mod selection;
 pub mod term;

@@ -1,6 +1,6 @@
 //! Which terms the recordings ask for: sets grown from the best few, and pruned.
 
-use super::candidates::{is_likelier, one_body, stribeck_for, tried};
+use super::candidates::{is_likelier, stribeck_for};
 use super::criteria::{LEAST_GAIN_PER_VALUE, LEAST_PART_OF_EFFORT, LINK_PART, NEGLIGIBLE_PART};
 use super::filter::innovations;
 use super::fit::{Effort, Fit, fit};
@@ -42,9 +42,6 @@ pub struct Chosen {
 /// Sets that each round grows from.
 const BEAM: usize = 2;
 
-/// Terms of a round that are fitted in full.
-const POLISHED: usize = 5;
-
 /// Terms at most.
 const MOST_TERMS: usize = 4;
 
@@ -71,13 +68,7 @@ impl Search<'_> {
         let is_negligible = !self.is_asked && self.unexplained(&best) < LEAST_PART_OF_EFFORT * self.scales.effort;
         for _ in 0..if is_negligible { 0 } else { MOST_TERMS } {
             say(&format!("the drive: {}; one term more", self.so_far(&best)));
-            let mut grown: Vec<Fit> = Vec::new();
-            for base in &beam {
-                let mut quick = self.quickly_grown(base);
-                quick.truncate(POLISHED);
-                let full = quick.iter().map(|quick| self.without_idle_friction(self.polished(quick)));
-                grown.extend(full.map(|fit| self.within_ends(fit, base)));
-            }
+            let mut grown = self.grown(&beam, &best);
             let rigid = beam.iter().find(|fit| !fit.model.has_link()).filter(|_| !best.model.has_link());
             if let Some(rigid) = rigid
                 && link_searches < LINK_SEARCHES
@@ -100,7 +91,9 @@ impl Search<'_> {
                 None if !is_waiting && grown.iter().any(|fit| is_likelier(fit, &best)) => is_waiting = true,
                 None => break,
             }
-            beam = next_beam(grown, &best, is_waiting);
+            let is_answer = |fit: &Fit| is_waiting || !self.leaves_far_more(fit, &best);
+            let answers = grown.into_iter().filter(is_answer).collect();
+            beam = next_beam(answers, &best, is_waiting);
             if self.unexplained(&best) < NEGLIGIBLE_PART * self.unexplained(&self.nominal) {
                 break;
             }
@@ -135,17 +128,6 @@ impl Search<'_> {
         let leaves_little = |fit: &Fit| self.unexplained(fit) <= LINK_PART * nominal;
         let speaks = |fit: &Fit| !is_at_end(fit) && (is_moved_otherwise || self.is_worth(fit, best));
         !leaves_little(best) && !grown.iter().any(|fit| leaves_little(fit) && speaks(fit))
-    }
-
-    /// `base` with each candidate term, fitted quickly; beside a link, of which every row costs many steps, on the liveliest stretch.
-    fn quickly_grown(&self, base: &Fit) -> Vec<Fit> {
-        let disturbance = self.disturbance(base);
-        let candidates = one_body(&self.data, base, &disturbance);
-        if base.model.has_link() {
-            let trials = [links::liveliest(&self.data, &disturbance)];
-            return tried(&Data { trials: &trials, ..self.data }, base, candidates);
-        }
-        tried(&self.data, base, candidates)
     }
 
     /// `best`, or the likeliest of `sets` that is worth its terms where the inertia of `best` is not believed or a value ended where its
@@ -195,7 +177,9 @@ impl Search<'_> {
     }
 }
 
-fn is_at_end(fit: &Fit) -> bool {
+/// Whether a value of `fit` ended where its search did.
+#[must_use]
+pub fn is_at_end(fit: &Fit) -> bool {
     fit.model.is_at_end(&fit.values)
 }
 

@@ -1,5 +1,6 @@
 //! A recording as the drive's model sees it: encoder rows, and the signals that act between them.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::noise::{robust_white_variance, white_variance};
@@ -37,6 +38,10 @@ pub struct DriveTrial {
 
 /// Periods after which a pause is a gap: what the drive did meanwhile is unknown, and the filter starts anew.
 const GAP_PERIODS: f64 = 8.0;
+
+/// Periods before and after a stretch within which the signals of its trial are kept: an effort comes late by twenty at the most, and of a lag of
+/// fifty e^-4 is lost.
+const LEAD_PERIODS: f64 = 200.0;
 
 impl DriveTrial {
     /// A trial without a load, of which every `every`-th row is taken as an encoder row, and whose force is without noise.
@@ -129,22 +134,43 @@ impl DriveTrial {
 
     /// The encoder rows `rows` as a trial of their own; the signals between them stay whole.
     #[must_use]
-    pub fn slice(&self, rows: std::ops::Range<usize>) -> Self {
-        let mut restart = self.restart[rows.clone()].to_vec();
-        if let Some(first) = restart.first_mut() {
-            *first = true;
+    pub fn slice(&self, rows: Range<usize>) -> Self {
+        self.cut(&[rows], 0..self.source_time.len())
+    }
+
+    /// The encoder rows of `stretches`, which follow each other with other rows between, each as a stretch of its own; of the signals between them what
+    /// lies within [`LEAD_PERIODS`].
+    #[must_use]
+    pub fn of_stretches(&self, stretches: &[Range<usize>]) -> Self {
+        let lead_s = LEAD_PERIODS * self.period_s;
+        let mut kept: Vec<usize> = Vec::new();
+        for rows in stretches.iter().filter(|rows| !rows.is_empty()) {
+            let ends = [self.time[rows.start] - lead_s, self.time[rows.end - 1] + lead_s];
+            let [start, end] = ends.map(|end| self.source_time.partition_point(|time| *time < end));
+            kept.extend(start.max(kept.last().map_or(0, |last| last + 1))..end);
         }
+        self.cut(stretches, kept.into_iter())
+    }
+
+    /// The encoder rows of `stretches`, each as a stretch of its own, and the `kept` rows of the signals between them.
+    fn cut(&self, stretches: &[Range<usize>], kept: impl Iterator<Item = usize> + Clone) -> Self {
+        let of_rows = |column: &[f64]| stretches.iter().flat_map(|rows| column[rows.clone()].iter().copied()).collect();
+        let of_kept = |column: &Vec<f64>| kept.clone().map(|row| column[row]).collect();
+        let starts = |rows: &Range<usize>| {
+            let start = rows.start;
+            rows.clone().map(move |row| row == start || self.restart[row])
+        };
         Self {
             name: self.name.clone(),
-            time: self.time[rows.clone()].to_vec(),
-            position: self.position[rows].to_vec(),
-            restart,
+            time: of_rows(&self.time),
+            position: of_rows(&self.position),
+            restart: stretches.iter().flat_map(starts).collect(),
             period_s: self.period_s,
             recorded_period_s: self.recorded_period_s,
-            source_time: self.source_time.clone(),
-            effort: self.effort.clone(),
-            load: self.load.clone(),
-            force: self.force.clone(),
+            source_time: of_kept(&self.source_time),
+            effort: of_kept(&self.effort),
+            load: self.load.as_ref().map(of_kept),
+            force: self.force.as_ref().map(of_kept),
             force_density: self.force_density,
             noise_filter: self.noise_filter.clone(),
         }
@@ -206,6 +232,8 @@ impl DriveTrial {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::drive::input::Inputs;
+    use crate::diagnose::drive::law::DriveLaw;
 
     #[test]
     fn a_cut_is_no_noise_of_the_encoder_and_starts_a_stretch() {
@@ -218,5 +246,32 @@ mod tests {
         assert_eq!((0..cut.len()).filter(|row| cut.restart[*row]).collect::<Vec<_>>(), [0, 100, 199]);
         assert!(cut.encoder_variance() < 1e-20 && white_variance(&cut.position) > 1e-6);
         assert_eq!(cut.source_time, time);
+    }
+
+    /// A late effort through a lag of ten rows is within a stretch what it is in the whole trial.
+    #[test]
+    fn stretches_keep_what_acts_near_them() {
+        let time: Vec<f64> = (0..4000).map(|row| f64::from(row) * 1e-3).collect();
+        let wave = |hz: f64| time.iter().map(|t| (std::f64::consts::TAU * hz * t).sin()).collect::<Vec<f64>>();
+        let (position, effort, force) = (wave(1.0), wave(3.0), wave(7.0));
+        let mut trial = DriveTrial::new("whole.csv".to_owned(), time.clone(), &position, effort, Some(force), 1);
+        trial.load = Some(wave(2.0));
+        trial.restart[1300] = true;
+        // The first two share what lies between them.
+        let stretches = [400..700, 800..1000, 1200..1500, 3000..3500];
+        let cut = trial.of_stretches(&stretches);
+        let rows: Vec<usize> = stretches.iter().cloned().flatten().collect();
+        assert_eq!(cut.position, rows.iter().map(|row| position[*row]).collect::<Vec<_>>());
+        assert_eq!((0..cut.len()).filter(|row| cut.restart[*row]).collect::<Vec<_>>(), [0, 300, 500, 600, 800]);
+        assert!(cut.source_time.windows(2).all(|pair| pair[1] > pair[0]) && cut.source_time.len() < 2500);
+        let law = DriveLaw { effort_lag_s: 0.01, effort_delay_s: 0.02, ..DriveLaw::nominal(1.0, 0.0, 0.0) };
+        let [whole, own] = [&trial, &cut].map(|trial| Inputs::of(trial, &law));
+        for (at, row) in rows.iter().enumerate().filter(|(at, _)| !cut.restart[*at]) {
+            // Of the lag e^-18 is lost, and a curve through its end has no bend.
+            assert!((own.effort[at] - whole.effort[*row]).abs() < 1e-7, "{row}");
+            assert!((own.borne(at) - whole.borne(*row)).abs() < 1e-12, "{row}");
+        }
+        assert!(trial.slice(7..7).is_empty() && trial.of_stretches(&[7..7, 9..9]).is_empty());
+        assert_eq!(trial.slice(7..9).source_time, time);
     }
 }
