@@ -16,12 +16,14 @@ const MOST_FREQUENCIES: usize = 4;
 #[must_use]
 pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f64]) -> Vec<Start> {
     let rows = Rows::of(search, data, fit, rest);
+    let harmonics = |frequency: f64| (1..=search.harmonics).map(move |times| times as f64 * frequency);
+    // A wave in step with the motion itself is not told from a law of the motion.
+    let is_motion = |frequency: f64| harmonics(frequency).any(|one| is_in_step(data, fit, one));
     let mut heard: Vec<(f64, f64)> = Vec::new();
     for &(first, apart, count) in &search.frequencies {
         let frequencies: Vec<f64> = (0..count).map(|at| first + apart * at as f64).collect();
         // Of a form with harmonics, what all of them take: the sum is largest at the fundamental (least squares: M. G. Christensen,
         // A. Jakobsson, Multi-Pitch Estimation, 2009).
-        let harmonics = |frequency: f64| (1..=search.harmonics).map(move |times| times as f64 * frequency);
         let mut power = vec![0.0; count];
         for times in 1..=search.harmonics {
             let one = rows.spectrum(times as f64 * first, times as f64 * apart, count);
@@ -29,13 +31,11 @@ pub fn strongest(search: &FrequencySearch, data: &Data<'_>, fit: &Fit, rest: &[f
         }
         let level = |at: Option<usize>| at.and_then(|at| power.get(at)).copied().unwrap_or(f64::NEG_INFINITY);
         let peaks = (0..count).filter(|at| power[*at] >= level(at.checked_sub(1)) && power[*at] >= level(Some(at + 1)));
-        // A wave in step with the motion itself is not told from a law of the motion.
-        let is_motion = |at: &usize| harmonics(frequencies[*at]).any(|one| is_in_step(data, fit, one));
-        heard.extend(peaks.filter(|at| !is_motion(at)).map(|at| (power[at], frequencies[at])));
+        heard.extend(peaks.map(|at| (power[at], frequencies[at])));
     }
     heard.sort_by(|a, b| b.0.total_cmp(&a.0));
-    heard.truncate(MOST_FREQUENCIES);
-    heard.iter().map(|(_, frequency)| search.start(*frequency)).collect()
+    let others = heard.into_iter().map(|(_, frequency)| frequency).filter(|frequency| !is_motion(*frequency));
+    others.take(MOST_FREQUENCIES).map(|frequency| search.start(frequency)).collect()
 }
 
 /// Where the spectrum around a line is looked at, of its frequency to either side: beyond the skirts of the line itself, and no farther than
