@@ -57,8 +57,6 @@ thresholds! { "contact";
     /// Squares a row, over the sensors' own, from which effects are looked for from other surfaces and along a broken line: twice the
     /// noise's deviation, from which what is missing may have moved the surface.
     MUCH_MISSING = 4.0, "1", chosen;
-    /// The same at which the search for more effects ends, where the sensors' noise is as stated.
-    AT_NOISE = 1.02, "1", chosen;
     /// Deviation of a trial's own surface where it lies elsewhere, of the greatest depth.
     SURFACE_PRIOR = 0.3, "1", chosen;
     /// Deviation of a trial's own zero, of the greatest force.

@@ -9,6 +9,7 @@ use super::own_values::{moved_values, own_values};
 use super::projection::{Projection, Promise};
 use super::rest::Rest;
 use super::search::{Search, sorted_names};
+use super::worth::leaves_far_more;
 use crate::diagnose::term::Term;
 
 /// Promises of a round that are fitted.
@@ -83,9 +84,21 @@ impl Search<'_> {
     }
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
-    /// as well the one with the fewest is polished, and leaves room for other effects.
-    pub(super) fn polished(&self, quick: Vec<Fit>) -> Vec<Fit> {
-        self.to_the_end(distinct(self.coarsely_polished(quick)))
+    /// as well the one with the fewest is polished, and leaves room for other effects. Where the best is worth it beside `less`, those of which it takes
+    /// most of what they leave are none.
+    pub(super) fn polished(&self, quick: Vec<Fit>, less: &Fit) -> Vec<Fit> {
+        let mut fits = distinct(self.coarsely_polished(quick));
+        fits.truncate(POLISHED);
+        if fits.is_empty() {
+            return fits;
+        }
+        let first = fits.remove(0);
+        let mut full = self.to_the_end(vec![first.clone()]);
+        if self.is_admissible(&full[0]) && self.is_worth(&full[0], less) {
+            fits.retain(|fit| !leaves_far_more(&self.coarse, fit, &first));
+        }
+        full.extend(self.to_the_end(fits));
+        full
     }
 
     /// The best of `quick` fitted to the end on the means of rows, the best first at the price of their values.

@@ -91,7 +91,7 @@ impl Search<'_> {
         if !self.has_room(fit, 1) {
             return None;
         }
-        let grown = self.polished(self.grown(fit));
+        let grown = self.polished(self.grown(fit), fit);
         let rest = Rest::of(&self.data, fit);
         let worthy = grown.into_iter().filter(|more| self.is_admissible(more) && self.is_worth(more, fit));
         worthy.min_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)))

@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::criteria::{AT_NOISE, LEAST_GAIN};
+use super::criteria::{LEAST_GAIN, LEAST_SHARE, NOISE_POWER_KNOWN_TO};
 use super::fit::Fit;
 use super::growth::distinct;
 use super::rest::Rest;
 use super::search::{MOST_TERMS, Search};
+use super::worth::leaves_far_more;
 use crate::diagnose::linalg::energy;
 use crate::diagnose::so_far::so_far;
 
@@ -35,7 +36,7 @@ impl Search<'_> {
             let mut grown = if round == 0 { self.seen_layers() } else { Vec::new() };
             for base in &beam {
                 let quick = self.grown(base);
-                grown.extend(self.polished(quick));
+                grown.extend(self.polished(quick, &best));
             }
             grown.retain(|fit| self.is_admissible(fit));
             grown.sort_by(|a, b| a.energy.total_cmp(&b.energy));
@@ -47,19 +48,19 @@ impl Search<'_> {
             let Some(least) = grown.first() else { break };
             let rest = Rest::of(&self.data, least);
             grown.sort_by(|a, b| self.price(a, &rest).total_cmp(&self.price(b, &rest)));
-            let grown = distinct(grown);
+            let mut grown = distinct(grown);
             sets.extend(grown.iter().cloned());
-            let top = grown.iter().find(|fit| self.is_worth(fit, &best));
+            let top = grown.iter().find(|fit| self.is_worth(fit, &best)).cloned();
             match top {
                 Some(top) => {
-                    best = self.weigh_by(top.clone());
+                    grown.retain(|fit| !leaves_far_more(&self.data, fit, &top));
+                    best = self.weigh_by(top);
                     waiting = 0;
                 }
                 // Two effects can be worth it where neither is alone.
                 None => waiting += 1,
             }
-            let is_at_noise = self.data.noise_factor == 1.0 && best.energy < AT_NOISE * self.data.expected();
-            if waiting > 1 || is_at_noise {
+            if waiting > 1 || self.is_at_noise(&best) {
                 break;
             }
             let grown = grown.iter().filter(|fit| self.has_room(fit, 1)).take(BEAM);
@@ -88,6 +89,13 @@ impl Search<'_> {
         Chosen { fit, sets }
     }
 
+    /// Whether an effect that took all that `best` leaves beyond the sensors' noise would have less than its share of what that noise is not known
+    /// better than, where it is as stated.
+    fn is_at_noise(&self, best: &Fit) -> bool {
+        let least_left = 1.0 + (LEAST_SHARE * NOISE_POWER_KNOWN_TO.value()).value();
+        self.data.noise_factor == 1.0 && best.energy < least_left * self.data.expected()
+    }
+
     /// What `best` has beyond the nominal law, and what it leaves, both by the weights that count now.
     pub(super) fn so_far(&self, best: &Fit) -> String {
         let [best_left, all] =
@@ -105,7 +113,7 @@ impl Search<'_> {
             let mut better: Option<Fit> = None;
             for at in first..best.model.terms.len() {
                 let less = self.without(&best, at);
-                for fit in self.polished(self.grown(&less)) {
+                for fit in self.polished(self.grown(&less), &less) {
                     let is_open = self.is_admissible(&fit) && fit.model.terms.len() <= best.model.terms.len();
                     let price = self.price(&fit, &rest);
                     if is_open

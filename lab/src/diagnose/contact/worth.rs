@@ -2,11 +2,13 @@
 
 use super::criteria::{
     FAR_FROM_NOISE, FAR_LEAST_PART_OF_ALL, FAR_LEAST_SHARE, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE,
-    LEAST_SHARE, LEAST_TOLD_SHARE, LEAST_VUONG, VUONG_BLOCK_TIMES,
+    LEAST_SHARE, LEAST_TOLD_SHARE, LEAST_VUONG, NOISE_POWER_KNOWN_TO, TOLD_SHARE, VUONG_BLOCK_TIMES,
 };
+use super::data::Data;
 use super::fit::Fit;
 use super::rest::Rest;
 use super::search::Search;
+use crate::diagnose::evidence::share_beyond_noise;
 use crate::diagnose::model_comparison::vuong;
 
 /// What a larger model has over a smaller one.
@@ -107,6 +109,12 @@ impl Search<'_> {
     }
 }
 
+/// Whether `other` takes so much of what `fit` leaves of `data` beyond the sensors' noise that this stands for nothing beside it.
+#[must_use]
+pub(super) fn leaves_far_more(data: &Data<'_>, fit: &Fit, other: &Fit) -> bool {
+    share_beyond_noise(fit.energy, other.energy, data.expected(), NOISE_POWER_KNOWN_TO.value()) > TOLD_SHARE
+}
+
 /// Mean square of `less`, what the smaller of two laws leaves, over the rows in which the larger, which leaves `more`, differs from it by more than a deviation of
 /// the sensors, all in these: a reading that is clipped for a hundredth of the time leaves little on the whole. Zero where those rows tell no more than
 /// [`BLOCKS`] independent ones.
@@ -130,7 +138,6 @@ pub(super) fn free(fit: &Fit) -> usize {
 #[cfg(test)]
 mod tests {
     use super::super::circumstances::Circumstances;
-    use super::super::data::Data;
     use super::super::fit::Effort;
     use super::super::nominal::nominal_fit;
     use super::super::outcome::identify;
