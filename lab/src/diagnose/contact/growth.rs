@@ -9,7 +9,6 @@ use super::own_values::{moved_values, own_values};
 use super::projection::{Projection, Promise};
 use super::rest::Rest;
 use super::search::{Search, sorted_names};
-use super::worth::leaves_far_more;
 use crate::diagnose::term::Term;
 
 /// Promises of a round that are fitted.
@@ -84,8 +83,8 @@ impl Search<'_> {
     }
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
-    /// as well the one with the fewest is polished, and leaves room for other effects. Where the best is worth it beside `less`, those of which it takes
-    /// most of what they leave are none.
+    /// as well the one with the fewest is polished, and leaves room for other effects. Where the best is worth it beside `less`, those that are no
+    /// answer beside it are none.
     pub(super) fn polished(&self, quick: Vec<Fit>, less: &Fit) -> Vec<Fit> {
         let mut fits = distinct(self.coarsely_polished(quick));
         fits.truncate(POLISHED);
@@ -95,7 +94,7 @@ impl Search<'_> {
         let first = fits.remove(0);
         let mut full = self.to_the_end(vec![first.clone()]);
         if self.is_admissible(&full[0]) && self.is_worth(&full[0], less) {
-            fits.retain(|fit| !leaves_far_more(&self.coarse, fit, &first));
+            fits.retain(|fit| !self.is_no_answer(&self.coarse, fit, &first));
         }
         full.extend(self.to_the_end(fits));
         full
@@ -162,5 +161,22 @@ mod tests {
             assert_eq!((one.term, &from.values), (other.term, &expected_from.values));
             assert!((one.gain - other.gain).abs() <= 1e-9 * other.gain.abs(), "{one:?} {other:?}");
         }
+    }
+
+    /// A branch that relaxes is all there is: what takes a little of it is no answer and is not fitted on every row. Beside it nothing is worth its
+    /// values, and each of the best is.
+    #[test]
+    fn what_is_no_answer_beside_a_law_that_leaves_nothing_is_not_fitted_on_every_row() {
+        let trials = [1, 2].map(|seed| TestContact { branch: 150.0, ..TestContact::PLAIN }.trial(seed));
+        let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        let [data, coarse] = [(), ()].map(|()| Data::new(&trials).weighed(&nominal));
+        let nominal = data.again(&nominal);
+        let search = Search { nominal: nominal.clone(), data, coarse, circumstances: Circumstances::default() };
+        let quick = search.grown(&nominal);
+        let full = search.polished(quick.clone(), &nominal);
+        assert_eq!(full[0].model.names(0), ["stress_relaxation"]);
+        assert!(full.len() < POLISHED, "{}", full.len());
+        assert!(full.iter().all(|fit| !search.is_no_answer(&search.data, fit, &full[0])));
+        assert!(search.polished(quick, &full[0]).len() > full.len());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::criteria::{
     FAR_FROM_NOISE, FAR_LEAST_PART_OF_ALL, FAR_LEAST_SHARE, LEAST_GAIN, LEAST_PART_OF_ALL, LEAST_PART_OF_FORCE,
-    LEAST_SHARE, LEAST_TOLD_SHARE, LEAST_VUONG, NOISE_POWER_KNOWN_TO, TOLD_SHARE, VUONG_BLOCK_TIMES,
+    LEAST_SHARE, LEAST_TOLD_SHARE, LEAST_VUONG, NOISE_POWER_KNOWN_TO, NOTABLE_POWER, TOLD_SHARE, VUONG_BLOCK_TIMES,
 };
 use super::data::Data;
 use super::fit::Fit;
@@ -103,16 +103,19 @@ impl Search<'_> {
         0.5 * (self.data.rows() as f64 / rest.correlated_rows).max(1.0).ln()
     }
 
+    /// Whether `fit` is no answer beside `other`, which leaves nothing notable of `data` and takes so much of what `fit` leaves there beyond the
+    /// sensors' noise that it stands for it. Where something notable is left, what leaves more may hold a part that the other lacks.
+    pub(super) fn is_no_answer(&self, data: &Data<'_>, fit: &Fit, other: &Fit) -> bool {
+        let taken = share_beyond_noise(fit.energy, other.energy, data.expected(), NOISE_POWER_KNOWN_TO.value());
+        other.energy < NOTABLE_POWER * data.expected()
+            && taken > TOLD_SHARE
+            && !self.is_one_law(&fit.model, &other.model)
+    }
+
     /// Squares that are left, in nats under `rest`, with what each value has to earn.
     pub(super) fn price(&self, fit: &Fit, rest: &Rest) -> f64 {
         0.5 / (rest.power * rest.correlated_rows) * fit.energy + self.price_of_value(rest) * free(fit) as f64
     }
-}
-
-/// Whether `other` takes so much of what `fit` leaves of `data` beyond the sensors' noise that this stands for nothing beside it.
-#[must_use]
-pub(super) fn leaves_far_more(data: &Data<'_>, fit: &Fit, other: &Fit) -> bool {
-    share_beyond_noise(fit.energy, other.energy, data.expected(), NOISE_POWER_KNOWN_TO.value()) > TOLD_SHARE
 }
 
 /// Mean square of `less`, what the smaller of two laws leaves, over the rows in which the larger, which leaves `more`, differs from it by more than a deviation of
