@@ -48,6 +48,18 @@ static SPEC: EffectSpec = EffectSpec {
             ],
         },
         Form {
+            name: "three_branches",
+            equation: "F = K x + B v + z1 + z2 + z3, dz1/dt = branch_stiffness v - z1 / relaxation_time, z2 and z3 alike with second_stiffness, second_time, third_stiffness, third_time",
+            parameters: &[
+                branch_stiffness("branch_stiffness"),
+                time("relaxation_time"),
+                branch_stiffness("second_stiffness"),
+                time("second_time"),
+                branch_stiffness("third_stiffness"),
+                time("third_time"),
+            ],
+        },
+        Form {
             name: "power_law",
             equation: "F = K x + B v + integral G(t - s) v(s) ds, G(t) = memory_stiffness (t / reference_time)^-exponent, by ten branches over six decades about reference_time",
             parameters: &[
@@ -72,6 +84,18 @@ static SPEC: EffectSpec = EffectSpec {
             ],
         },
         Form {
+            name: "quasi_linear_three",
+            equation: "F = f(x) + B v + z1 + z2 + z3, dz1/dt = fading_ratio df/dt - z1 / relaxation_time, z2 and z3 alike with second_ratio, second_time, third_ratio, third_time",
+            parameters: &[
+                fading_ratio("fading_ratio"),
+                time("relaxation_time"),
+                fading_ratio("second_ratio"),
+                time("second_time"),
+                fading_ratio("third_ratio"),
+                time("third_time"),
+            ],
+        },
+        Form {
             name: "quasi_linear_power_law",
             equation: "F = f(x) + B v + integral G(t - s) df(s), G(t) = memory_ratio (t / reference_time)^-exponent, by ten branches over six decades about reference_time",
             parameters: &[
@@ -91,6 +115,25 @@ static SPEC: EffectSpec = EffectSpec {
     resembles: &["channel_delay", "force_lag", "time_varying_stiffness", "plastic_set"],
     source: "J. C. Maxwell (1867); Wiechert's generalised model; a massless spring in series with damper and spring is the same law; power law: G. W. Scott Blair (1947); quasi-linear: Y. C. Fung, Biomechanics, 1981, ch. 7",
 };
+
+/// Indices of the forms.
+mod form {
+    pub const ONE: usize = 0;
+    pub const TWO: usize = 1;
+    pub const THREE: usize = 2;
+    /// From here on what relaxes is the spring's force by its own law, and before the depth; otherwise in the same order.
+    pub const QUASI_LINEAR: usize = 4;
+}
+
+/// Branches of `form`, what it strains set aside; `None` of a power law.
+const fn branches(form: usize) -> Option<usize> {
+    match form % form::QUASI_LINEAR {
+        form::ONE => Some(1),
+        form::TWO => Some(2),
+        form::THREE => Some(3),
+        _ => None,
+    }
+}
 
 /// Branches that a power law of time is made of, and the factor between their times: six decades in all. At an exponent of 0.25 the
 /// sum of exponentials swings by 1.6 thousandths about the power law (Poisson's sum: 2 |Gamma(a + 2 pi i / ln factor)| / Gamma(a)).
@@ -180,27 +223,32 @@ impl Effect for StressRelaxation {
             Foundation::any_form("layered_stiffness"),
             Foundation::any_form("plastic_set"),
         ];
-        if form >= 3 { &LAWS } else { &[] }
+        if form >= form::QUASI_LINEAR { &LAWS } else { &[] }
     }
 
     fn simpler(&self, form: usize, values: &[f64], stiffness: f64) -> Option<(usize, Vec<f64>)> {
-        let sizes: &[usize] = if form == 4 { &[0, 2] } else { &[0] };
         let mut values = values.to_vec();
-        sizes.iter().for_each(|size| values[*size] *= stiffness);
-        (form >= 3).then(|| (form - 3, values))
+        (0..branches(form).unwrap_or(1)).for_each(|nth| values[2 * nth] *= stiffness);
+        (form >= form::QUASI_LINEAR).then(|| (form - form::QUASI_LINEAR, values))
     }
 
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
-        let size = if form >= 3 { 0.2 } else { 0.2 * scene.stiffness };
+        let size = if form >= form::QUASI_LINEAR { 0.2 } else { 0.2 * scene.stiffness };
         let times = geometric(2.0 * scene.step, scene.duration, 10);
-        match form {
-            0 | 3 => times.iter().map(|time| Start::sized(&[size, *time], &[0])).collect(),
-            1 | 4 => {
-                let pairs = (0..times.len())
-                    .flat_map(|first| (first + 2..times.len()).step_by(2).map(move |second| (first, second)));
-                pairs.map(|(first, second)| Start::sized(&[size, times[first], size, times[second]], &[0, 2])).collect()
-            }
-            _ => {
+        // Branches whose times are as far apart, by factors.
+        let spread = |count: usize, apart: usize| {
+            let times = &times;
+            (0..times.len().saturating_sub((count - 1) * apart)).map(move |first| {
+                let branch = |nth: usize| [size, times[first + nth * apart]];
+                let sizes: Vec<usize> = (0..count).map(|nth| 2 * nth).collect();
+                Start::sized(&(0..count).flat_map(branch).collect::<Vec<f64>>(), &sizes)
+            })
+        };
+        match branches(form) {
+            Some(1) => spread(1, 0).collect(),
+            Some(2) => [2, 4, 6, 8].into_iter().flat_map(|apart| spread(2, apart)).collect(),
+            Some(count) => [2, 3, 4].into_iter().flat_map(|apart| spread(count, apart)).collect(),
+            None => {
                 let middle = (2.0 * scene.step * scene.duration).sqrt();
                 [0.1, 0.3, 0.6].iter().map(|exponent| Start::sized(&[size, *exponent, middle], &[0])).collect()
             }
@@ -208,12 +256,11 @@ impl Effect for StressRelaxation {
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
-        let strained = if form >= 3 { touch.spring } else { touch.depth };
-        let mut branches = Branches::at(state, strained, touch.step);
-        touch.extra += match form {
-            0 | 3 => branches.branch(0, values[0], values[1]),
-            1 | 4 => branches.branch(0, values[0], values[1]) + branches.branch(1, values[2], values[3]),
-            _ => branches.power_law(values[0], values[1], values[2]),
+        let strained = if form >= form::QUASI_LINEAR { touch.spring } else { touch.depth };
+        let mut memory = Branches::at(state, strained, touch.step);
+        touch.extra += match branches(form) {
+            Some(count) => (0..count).map(|nth| memory.branch(nth, values[2 * nth], values[2 * nth + 1])).sum(),
+            None => memory.power_law(values[0], values[1], values[2]),
         };
     }
 }
