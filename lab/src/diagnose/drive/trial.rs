@@ -138,8 +138,8 @@ impl DriveTrial {
         self.cut(&[rows], 0..self.source_time.len())
     }
 
-    /// The encoder rows of `stretches`, which follow each other with other rows between, each as a stretch of its own; of the signals between them what
-    /// lies within [`LEAD_PERIODS`].
+    /// The encoder rows of `stretches`, which follow each other with other rows between, each as a stretch of its own, with the signals that act near
+    /// them.
     #[must_use]
     pub fn of_stretches(&self, stretches: &[Range<usize>]) -> Self {
         let lead_s = LEAD_PERIODS * self.period_s;
