@@ -125,7 +125,7 @@ impl<'a> Linearisation<'a> {
                 moved[at] = range.moved(values[at], difference);
             }
             if self.model.law(&moved) == self.law {
-                // As the factor of a load that is not given.
+                // As the averaging of an effort that is not recorded early.
                 return vec![0.0; self.innovations.len()];
             }
             let after = self.data.standardised(&self.passes(&moved), &self.base);
