@@ -1,4 +1,5 @@
-//! How friction or effort changes over a trial or along the way, of no law: what warms up, wears, fades or is greased in places.
+//! How friction or effort changes over a trial, along the way or with the velocity, of no law: what warms up, wears, fades, is greased in places or
+//! brakes one way.
 
 use super::curve::Curve;
 
@@ -22,6 +23,8 @@ pub enum Along {
     Time,
     /// Position.
     Place,
+    /// Velocity with its sign; at rest it is of two minds, as a damper that brakes one way.
+    Velocity,
 }
 
 /// By how much something is more, as a share of itself.
@@ -36,13 +39,19 @@ pub struct Course {
 }
 
 impl Course {
-    /// What `of` is multiplied by `time` seconds after the first row, at `position`.
+    /// What `of` is multiplied by `time` seconds after the first row, at this position and velocity.
     #[must_use]
-    pub fn factor(&self, of: Varying, time: f64, position: f64) -> f64 {
+    pub fn factor(&self, of: Varying, time: f64, [position, velocity]: [f64; 2]) -> f64 {
         if of != self.of || self.curve.knots.is_empty() {
             return 1.0;
         }
-        1.0 + self.curve.at(if self.along == Along::Time { time } else { position })
+        1.0 + self.curve.at(match self.along {
+            Along::Time => time,
+            Along::Place => position,
+            // The knots of both ways lie one after the other.
+            Along::Velocity if velocity >= 0.0 => velocity + self.curve.spacing,
+            Along::Velocity => velocity,
+        })
     }
 }
 
@@ -55,9 +64,13 @@ mod tests {
         let curve = Curve { origin: 0.0, spacing: 2.0, knots: vec![0.0, 1.0] };
         let warming = Course { of: Varying::ViscousFriction, along: Along::Time, curve: curve.clone() };
         let of = [Varying::DryFriction, Varying::ViscousFriction, Varying::Effort];
-        assert_eq!(of.map(|of| warming.factor(of, 1.0, 9.0)), [1.0, 1.5, 1.0]);
-        let along = Course { of: Varying::Effort, along: Along::Place, curve };
-        assert_eq!(of.map(|of| along.factor(of, 9.0, 0.5)), [1.0, 1.0, 1.25]);
-        assert_eq!(of.map(|of| Course::default().factor(of, 1.0, 1.0)), [1.0; 3]);
+        assert_eq!(of.map(|of| warming.factor(of, 1.0, [9.0, 5.0])), [1.0, 1.5, 1.0]);
+        let along = Course { of: Varying::Effort, along: Along::Place, curve: curve.clone() };
+        assert_eq!(of.map(|of| along.factor(of, 9.0, [0.5, 7.0])), [1.0, 1.0, 1.25]);
+        let both_ways = Curve { origin: -2.0, spacing: 2.0, knots: vec![3.0, 1.0, 0.0, 0.5] };
+        let braking = Course { of: Varying::ViscousFriction, along: Along::Velocity, curve: both_ways };
+        let of_velocity = |v: f64| braking.factor(Varying::ViscousFriction, 9.0, [7.0, v]);
+        assert_eq!([-2.0, -1.0, 0.0, 1.0, 3.0].map(of_velocity), [4.0, 3.0, 1.0, 1.25, 1.5]);
+        assert_eq!(of.map(|of| Course::default().factor(of, 1.0, [1.0; 2])), [1.0; 3]);
     }
 }

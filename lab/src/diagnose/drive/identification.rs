@@ -53,7 +53,7 @@ fn is_law_of_slower_motion(found: &Outcome) -> bool {
 
 /// The same of the motion as the encoder shows it. Where no law does and a force from outside comes and goes, the law of the rest is looked
 /// for. Where that explains all of the recordings, nothing came from outside: to a rigid drive, by which such stretches are found, a
-/// resonance that is passed looks like a push.
+/// resonance that is passed looks like a push. Nor did anything where it is explained by what a force of no law does far better than, throughout.
 fn identify_between_pushes(
     trials: Vec<DriveTrial>,
     rig: &NominalDrive,
@@ -79,8 +79,11 @@ fn identify_between_pushes(
         let own = stretches.iter().filter(|stretch| stretch.trial == number);
         trial.without(&own.map(|stretch| [stretch.start_s, stretch.end_s]).collect::<Vec<_>>())
     });
-    let Some(second) = identify_as_they_are(quiet.collect(), rig, seed, say).filter(|found| !found.named.is_empty())
-    else {
+    let is_found = |found: &Outcome| {
+        let names = found.chosen.model.names();
+        !found.named.is_empty() && first.rivalled.iter().all(|name| !names.contains(name))
+    };
+    let Some(second) = identify_as_they_are(quiet.collect(), rig, seed, say).filter(is_found) else {
         return Some(first);
     };
     let whole = identify_by(first.trials, rig, seed, say, &|search| search.fitted(&second.chosen));

@@ -2,12 +2,15 @@
 
 use super::alternatives::{Alternative, MOST_ALTERNATIVES, alternatives};
 use super::asymmetric_friction::as_asymmetric;
-use super::criteria::{LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE, UNKNOWN_PART_OF_EFFORT, VALUES_MATTER};
+use super::criteria::{
+    LEAST_PART_OF_EFFORT, MOST_LEFT, NOISE_POWER_KNOWN_TO, OVER_NOISE, UNKNOWN_PART_OF_EFFORT, VALUES_MATTER,
+};
 use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::Fit;
 use super::held_out::{Folds, missing_forces, rms};
 use super::lack_of_fit::{a_shape_does_better, has_a_shape};
 use super::model::index;
+use super::noise::Noise;
 use super::noise_at_rest::noise_at_rest;
 use super::outcome::Outcome;
 use super::ripples::as_one_cogging;
@@ -41,28 +44,68 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         alternatives.insert(0, Alternative::of(&stands.fit, &stands.held_out, &refitted));
         alternatives.truncate(MOST_ALTERNATIVES);
     }
-    let Validated { fit, held_out, named, uncertainty } = one.unwrap_or(stands);
-    let expected_noise = expected_noise(data, &fit, &common, seed);
+    let stands = one.unwrap_or(stands);
+    let chosen_names = stands.fit.model.names();
+    let (Validated { fit, held_out, named, uncertainty }, noise) = unrivalled(search, &folds, &common, stands, seed);
+    let told = fit.model.names();
+    let rivalled = chosen_names.into_iter().filter(|name| !told.contains(name)).collect();
     let missing = [given, refitted.missing.clone(), held_out.missing];
-    let at_rest =
-        noise_at_rest(data.trials, &missing[2], search.band_hz, search.scales.resolution, search.scales.travel);
-    let recorded_noise = expected_noise.hypot(effort_noise(data, &fit, &common, seed)).max(at_rest.unwrap_or(0.0));
-    let verdict = verdict(search, &fit, &missing, recorded_noise);
+    let verdict = verdict(search, &fit, &missing, noise.recorded);
     Outcome {
         trials: Vec::new(),
         verdict,
         intervals: uncertainty.ends,
         covariance: uncertainty.covariance,
         named,
+        rivalled,
         alternatives,
         missing,
-        expected_noise,
+        expected_noise: noise.expected,
         band_hz: search.band_hz,
         nominal: search.nominal.clone(),
         outside_forces: Vec::new(),
         coarser_step: None,
         beyond_the_sensor: None,
         chosen: fit,
+    }
+}
+
+/// What the sensors alone would leave, root mean squares in N or N m.
+struct SensorNoise {
+    /// Of the encoder's noise.
+    expected: f64,
+    /// With the noise that is recorded with the effort, or as loud as where the drive stands still.
+    recorded: f64,
+}
+
+impl SensorNoise {
+    /// That of a law that `stands`, drawn from `seed`.
+    fn beside(search: &Search<'_>, stands: &Validated, common: &Noise, seed: u64) -> Self {
+        let (data, scales) = (&search.data, &search.scales);
+        let expected = expected_noise(data, &stands.fit, common, seed);
+        let missing = &stands.held_out.missing;
+        let at_rest = noise_at_rest(data.trials, missing, search.band_hz, scales.resolution, scales.travel);
+        let recorded = expected.hypot(effort_noise(data, &stands.fit, common, seed)).max(at_rest.unwrap_or(0.0));
+        Self { expected, recorded }
+    }
+}
+
+/// `stands` without names in whose place a shape of no law does far better, where more is left than the sensors' noise is known to.
+fn unrivalled(
+    search: &Search<'_>,
+    folds: &Folds,
+    common: &Noise,
+    mut stands: Validated,
+    seed: u64,
+) -> (Validated, SensorNoise) {
+    loop {
+        let noise = SensorNoise::beside(search, &stands, common, seed);
+        let most = (1.0 + NOISE_POWER_KNOWN_TO.value()) * noise.recorded.powi(2);
+        let is_left = rms(&stands.held_out.missing).powi(2) > most;
+        match is_left.then(|| search.without_rivalled(&stands.fit)).flatten() {
+            Some(fit) => stands = validated(search, folds, common, fit),
+            None => return (stands, noise),
+        }
     }
 }
 

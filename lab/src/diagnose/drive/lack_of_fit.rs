@@ -1,19 +1,13 @@
 //! Whether a force that can be anything along one quantity does much better than the law that was found: then that is not all of it.
 
 use super::candidates::is_likelier;
-use super::course::{Along, Varying};
 use super::criteria::{CURVE_PART, LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE};
 use super::fit::Fit;
 use super::held_out::rms;
 use super::selection::Search;
+use super::shapes::{courses, load_by_place, shaped};
 use super::term::Term;
 use super::tone::loudest_tone;
-
-/// Knots of the free curve over position.
-const CURVE_KNOTS: usize = 24;
-
-/// Knots of a course over the time of a trial: what warms up or wears does so slowly.
-const TIME_KNOTS: usize = 6;
 
 /// A force in root mean square before and after something takes a part of it, N or N m.
 type Lessened = [f64; 2];
@@ -29,45 +23,18 @@ pub fn has_a_shape(search: &Search<'_>, missing: &[Vec<f64>]) -> bool {
     };
     leaves_much(search, nominal)
         && (takes_half(by_a_tone(missing))
-            || takes_half(by(search, nominal, curve(search)))
-            || courses(search, nominal).any(|course| takes_half(by(search, nominal, course))))
+            || takes_half(by(search, nominal, load_by_place(&search.scales)))
+            || courses(&search.scales, &nominal.model).any(|course| takes_half(by(search, nominal, course))))
 }
 
 /// Whether a shape of no law does much better than the names of `fit`, which leave the force `missing`, a column a trial: a load by position or a
-/// tone, where that `is_notable` beside the sensors' `noise`, or friction, or an effort, that changes with time or place. Then they are not all of it.
+/// tone, where that `is_notable` beside the sensors' `noise`, or friction, or an effort, that changes with time, place or velocity. Then they are not all of it.
 #[must_use]
 pub fn a_shape_does_better(search: &Search<'_>, fit: &Fit, missing: &[Vec<f64>], is_notable: bool, noise: f64) -> bool {
     let halves = |[left, after]: Lessened| is_halved(left, after, noise);
     leaves_much(search, fit)
-        && (is_notable && (halves(by_a_tone(missing)) || halves(by(search, fit, curve(search))))
-            || courses(search, fit).any(|course| halves(by(search, fit, course))))
-}
-
-/// A load by position.
-fn curve(search: &Search<'_>) -> Term {
-    let scales = &search.scales;
-    let spacing = scales.travel / (CURVE_KNOTS - 1) as f64;
-    Term::Curve { origin: scales.lowest, spacing, count: CURVE_KNOTS }
-}
-
-/// Friction and effort that change, of those that `fit` has.
-fn courses(search: &Search<'_>, fit: &Fit) -> impl Iterator<Item = Term> {
-    let scales = search.scales;
-    let rubs = fit.model.terms.iter().any(Term::is_friction);
-    let all = [
-        (Varying::DryFriction, Along::Time),
-        (Varying::DryFriction, Along::Place),
-        (Varying::ViscousFriction, Along::Time),
-        (Varying::ViscousFriction, Along::Place),
-        (Varying::Effort, Along::Time),
-    ];
-    all.into_iter().filter(move |(of, _)| rubs || *of != Varying::DryFriction).map(move |(of, along)| {
-        let (origin, length, count) = match along {
-            Along::Time => (0.0, scales.duration_s, TIME_KNOTS),
-            Along::Place => (scales.lowest, scales.travel, CURVE_KNOTS),
-        };
-        Term::Course { of, along, origin, spacing: length / (count - 1) as f64, count }
-    })
+        && (is_notable && (halves(by_a_tone(missing)) || halves(by(search, fit, load_by_place(&search.scales))))
+            || courses(&search.scales, &fit.model).any(|course| halves(by(search, fit, course))))
 }
 
 /// Whether `fit`, of a rigid drive, leaves so much of what the nominal law lacks, and of the effort, that its names are doubted.
@@ -80,11 +47,7 @@ fn leaves_much(search: &Search<'_>, fit: &Fit) -> bool {
 
 /// What `term` of no law takes of what `fit` leaves unexplained; nothing where it is not likelier.
 fn by(search: &Search<'_>, fit: &Fit, term: Term) -> Lessened {
-    let mut start = fit.clone();
-    let count = term.ranges(&search.scales).len();
-    start.model.terms.push(term);
-    start.values.extend(vec![0.0; count]);
-    let better = search.polished(&start);
+    let better = search.polished(&shaped(fit, term));
     let left = search.unexplained(fit);
     [left, if is_likelier(&better, fit) { search.unexplained(&better) } else { left }]
 }

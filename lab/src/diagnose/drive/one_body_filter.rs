@@ -108,7 +108,7 @@ pub fn one_body(
         } else {
             let step = trial.time[row] - trial.time[row - 1];
             let force = inputs.force[row];
-            let factor = |of| law.course.factor(of, trial.time[row] - trial.time[0], state[0]);
+            let factor = |of| law.course.factor(of, trial.time[row] - trial.time[0], state);
             let acting = Acting {
                 push: factor(Varying::Effort) * inputs.effort[row] - force,
                 borne: inputs.borne(row),

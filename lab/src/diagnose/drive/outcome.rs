@@ -24,6 +24,8 @@ pub struct Outcome {
     pub covariance: Vec<Vec<f64>>,
     /// The terms that are named.
     pub named: Vec<NamedTerm>,
+    /// Names in whose place a force of no law does far better, and which are not told for it.
+    pub rivalled: Vec<&'static str>,
     /// What else would do.
     pub alternatives: Vec<Alternative>,
     /// Missing force by the rig file as given, by refitted values, and with the named terms, a column a trial.

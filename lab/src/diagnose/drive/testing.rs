@@ -71,6 +71,10 @@ pub struct TestDrive {
     pub tone: f64,
     /// Share of the viscous friction by which it is more at the start of a trial, and less and less from there, within 2 s.
     pub cold: f64,
+    /// Share of the viscous friction by which it is more backward than forward.
+    pub one_way: f64,
+    /// N/m, of a spring that is relaxed at -40 mm.
+    pub spring: f64,
     /// N^2 s, density of a white force.
     pub disturbance: f64,
     /// m, deviation of the encoder's white noise.
@@ -123,6 +127,8 @@ impl TestDrive {
         iron: f64::INFINITY,
         tone: 0.0,
         cold: 0.0,
+        one_way: 0.0,
+        spring: 0.0,
         disturbance: 0.0,
         encoder: 5e-6,
         effort_noise: 0.0,
@@ -189,13 +195,16 @@ impl TestDrive {
                     load_x += step * load_v;
                 }
                 let tone = self.tone * (std::f64::consts::TAU * 7.3 * t + seed as f64).sin();
-                let viscous = self.viscous * (1.0 + self.cold * (-0.5 * t).exp());
+                let against = if v < 0.0 { self.one_way } else { 0.0 };
+                let viscous = self.viscous * (1.0 + against + self.cold * (-0.5 * t).exp());
                 let root = self.root * v.signum() * (v.abs() / 0.1).sqrt();
                 let wave = |size: f64, pitch: f64| size * (std::f64::consts::TAU * x / pitch).sin();
                 let ripple = wave(self.ripple, 5e-3) + wave(self.third_ripple, 5e-3 / 3.0);
                 let dry = root + bristle;
                 let free = v + step
-                    * (given - passed - dry - ripple - (viscous - on_load) * v - self.load + tone + white)
+                    * (given - passed - dry - ripple - (viscous - on_load) * v - self.load - self.spring * (x + 0.04)
+                        + tone
+                        + white)
                     / motor;
                 let at_once = if self.presliding > 0.0 { 0.0 } else { rubbed };
                 let held = step * at_once / motor;

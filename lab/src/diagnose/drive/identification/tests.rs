@@ -327,3 +327,18 @@ fn recordings_that_do_not_move_say_nothing() {
     );
     assert!(identify(vec![still], &nominal(0.8, 4.0), 1, &|_| {}).is_none());
 }
+
+/// A spring of 120 N/m that returns a slide, and a damper that brakes one way twice as much: neither is on the list, and each can look like what is.
+#[test]
+fn what_depends_on_something_else_than_a_name_says_is_unknown() {
+    let told = |drive: &TestDrive| {
+        let trials = vec![drive.trial(3.0, 91), drive.trial(3.0, 92)];
+        identify(trials, &nominal(0.8, 4.0), 1, &|_| {}).expect("a drive that moves")
+    };
+    let spring = told(&TestDrive { spring: 120.0, ..TestDrive::PLAIN });
+    assert_eq!(spring.chosen.model.names(), ["gravity_load"]);
+    assert_eq!(spring.verdict, Verdict::PartlyExplained);
+    let damper = told(&TestDrive { one_way: 1.0, ..TestDrive::PLAIN });
+    assert!(damper.named.is_empty(), "{:?}", damper.chosen.model.names());
+    assert_eq!(damper.verdict, Verdict::Unknown);
+}

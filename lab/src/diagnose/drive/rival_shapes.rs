@@ -1,0 +1,101 @@
+//! Names in whose place a force of no law does far better.
+//!
+//! A name says on what a force depends. A force that is missing for another reason can look like it: a spring that returns a slide makes its effort
+//! look limited, a damper that brakes one way makes a weight of its mean. Where a free curve along another quantity ([`super::shapes`]), in the place
+//! of the name, leaves far less than the name does, it is not told: the data say that the force depends on something else. This is the comparison of a
+//! parametric law with a nonparametric one (W. Haerdle, E. Mammen, *Ann. Stat.* 21, 1993, 1926), by likelihood with a price for each value.
+
+use super::candidates::is_likelier;
+use super::fit::{self, Effort, Fit};
+use super::likelihood::Data;
+use super::sample::sample;
+use super::selection::Search;
+use super::shapes::{courses, load_by_place, shaped};
+use super::term::Term;
+
+impl Search<'_> {
+    /// `fit` without a name in whose place a shape does far better, and that is not worth having beside it; `None` where all stand. Of a rigid drive:
+    /// what a link moves can look like any shape.
+    #[must_use]
+    pub fn without_rivalled(&self, fit: &Fit) -> Option<Fit> {
+        if fit.model.has_link() {
+            return None;
+        }
+        let own = self.nominal.model.terms.len();
+        let told = (own..fit.model.terms.len()).filter(|at| fit.model.terms[*at].is_told());
+        let mut rivalled =
+            told.filter(|at| self.promising(fit, *at).iter().any(|rival| self.is_rival(rival, fit, *at)));
+        let at = rivalled.next()?;
+        let (model, values) = fit.model.without(at, &fit.values);
+        Some(self.lessened(fit, model, values))
+    }
+
+    /// `fit` with each shape that does far better, on some of the rows, in the place of term `at`.
+    fn promising(&self, fit: &Fit, at: usize) -> Vec<Fit> {
+        let sampled = sample(&self.data, &self.disturbance(fit));
+        let data = Data { trials: sampled.as_deref().unwrap_or(self.data.trials), ..self.data };
+        let quick = |start: &Fit| fit::fit(&data, &start.model, &start.values, start.noise, Effort::QUICK);
+        let base = quick(fit);
+        let (model, values) = fit.model.without(at, &fit.values);
+        let less = quick(&Fit { model, values, ..fit.clone() });
+        let shapes = courses(&self.scales, &less.model).chain([load_by_place(&self.scales)]);
+        let others = shapes.filter(|shape| !is_of_one_kind(shape, &fit.model.terms[at]));
+        others.map(|shape| quick(&shaped(&less, shape))).filter(|rival| self.does_far_better(rival, &base)).collect()
+    }
+
+    /// Whether `rival`, fitted in full, does far better than `fit`, and term `at` of this is not worth having beside it.
+    fn is_rival(&self, rival: &Fit, fit: &Fit, at: usize) -> bool {
+        let rival = self.polished(rival);
+        if !self.does_far_better(&rival, fit) {
+            return false;
+        }
+        let mut both = rival.clone();
+        both.model.terms.push(fit.model.terms[at].clone());
+        both.values.extend_from_slice(&fit.values[fit.model.values_of(at)]);
+        !self.is_worth(&self.polished(&both), &rival)
+    }
+
+    fn does_far_better(&self, rival: &Fit, fit: &Fit) -> bool {
+        is_likelier(rival, fit) && self.leaves_far_more(fit, rival)
+    }
+}
+
+/// Whether `term` is of what `shape` is the free form of: beside it, it says more and no other.
+fn is_of_one_kind(shape: &Term, term: &Term) -> bool {
+    match shape {
+        Term::Curve { .. } => {
+            matches!(term, Term::ConstantLoad | Term::AngleLoad | Term::Cogging | Term::TwoRipples)
+        }
+        _ => term.is_friction(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{TestDrive, search_over};
+    use super::*;
+
+    /// A damper of 4 N s/m forward and 8 N s/m backward: a load takes the mean of what is missing, and the rest shows that it is none.
+    #[test]
+    fn a_name_goes_that_a_force_of_another_quantity_does_far_better_than() {
+        let stands = |drive: &TestDrive, terms: &[Term], own: &[f64]| {
+            let trials = [drive.trial(6.0, 6)];
+            let search = search_over(&trials, drive);
+            let mut start = search.nominal.clone();
+            terms.iter().for_each(|term| start.model.terms.push(term.clone()));
+            start.values.extend_from_slice(own);
+            let fit = search.polished(&start);
+            assert!(search.is_worth(&fit, &search.nominal), "{terms:?}");
+            search.without_rivalled(&fit).map_or(fit.model.terms, |less| less.model.terms)
+        };
+        let damper = TestDrive { one_way: 1.0, ..TestDrive::PLAIN };
+        assert_eq!(stands(&damper, &[Term::ConstantLoad], &[-0.1]), []);
+        let rubs = TestDrive { coulomb: 0.4, ..damper };
+        assert_eq!(stands(&rubs, &[Term::Coulomb, Term::ConstantLoad], &[0.4, -0.1]), [Term::Coulomb]);
+        // What is there stands, alone and beside what has no name.
+        for one_way in [0.0, 1.0] {
+            let weight = TestDrive { load: 0.5, one_way, ..TestDrive::PLAIN };
+            assert_eq!(stands(&weight, &[Term::ConstantLoad], &[0.4]), [Term::ConstantLoad]);
+        }
+    }
+}
