@@ -1,6 +1,8 @@
 //! Which waves in time the motion of the tool keeps step with: those are not told from a law of place and direction.
 
-use nalgebra::Matrix2;
+use std::ops::Range;
+
+use nalgebra::{Matrix2, Matrix4, RowVector4, Vector4};
 
 use super::criteria::LARGEST_SHARE_IN_STEP;
 use super::data::Data;
@@ -19,13 +21,13 @@ const WAYS: usize = 3;
 /// Whether a wave of `frequency`, Hz, in contact is one of place and direction along the trials of `data`, whose surface `fit` has: whether
 /// of the wave's variance, of the phase at which it is most, more than [`LARGEST_SHARE_IN_STEP`] lies between groups of rows of one depth
 /// and one way (the correlation ratio: K. Pearson 1905). Strokes that repeat with the wave's period show one phase at each of them, and
-/// a law of the motion could be all of it; holds, sweeps and strokes of another period show all.
+/// a law of the motion could be all of it; holds, sweeps and strokes of another period show all. A hold stays one where the wave itself moves the tool.
 #[must_use]
 pub fn is_in_step(data: &Data<'_>, fit: &Fit, frequency: f64) -> bool {
     let trials = data.trials.iter().enumerate();
     let shares = trials.filter_map(|(number, trial)| {
         let surface = (!fit.model.bilateral).then(|| fit.model.surface(&fit.values, number));
-        let groups = groups(trial, surface);
+        let groups = groups(trial, surface, frequency);
         let rows = groups.iter().flatten().count();
         Some((rows as f64, largest_share(trial, &groups, frequency)?))
     });
@@ -33,8 +35,8 @@ pub fn is_in_step(data: &Data<'_>, fit: &Fit, frequency: f64) -> bool {
     share > LARGEST_SHARE_IN_STEP * rows
 }
 
-/// The group of each row of `trial`; `None` of a row before the `surface`.
-fn groups(trial: &ContactTrial, surface: Option<f64>) -> Vec<Option<usize>> {
+/// The group of each row of `trial` beside a wave of `frequency`, Hz; `None` of a row before the `surface`.
+fn groups(trial: &ContactTrial, surface: Option<f64>, frequency: f64) -> Vec<Option<usize>> {
     let is_inside = |place: f64| surface.is_none_or(|surface| place > surface);
     let inside = || (0..trial.len()).filter(|row| is_inside(trial.position[*row]));
     let ends = inside().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
@@ -42,9 +44,12 @@ fn groups(trial: &ContactTrial, surface: Option<f64>) -> Vec<Option<usize>> {
     });
     let square = inside().map(|row| trial.velocity[row].powi(2)).sum::<f64>() / inside().count().max(1) as f64;
     let rest = AT_REST * square.sqrt();
+    let nearest = (ends[1] - ends[0]) / DEPTHS as f64;
+    let is_pushed = pushed(trial, &is_inside, nearest, frequency);
     let group = |row: usize| {
         let depth = (trial.position[row] - ends[0]) / (ends[1] - ends[0]).max(f64::MIN_POSITIVE);
         let way = match trial.velocity[row] {
+            _ if is_pushed[row] => 1,
             speed if speed < -rest => 0,
             speed if speed > rest => 2,
             _ => 1,
@@ -52,6 +57,52 @@ fn groups(trial: &ContactTrial, surface: Option<f64>) -> Vec<Option<usize>> {
         WAYS * ((depth * DEPTHS as f64) as usize).min(DEPTHS - 1) + way
     };
     (0..trial.len()).map(|row| is_inside(trial.position[row]).then(|| group(row))).collect()
+}
+
+/// Periods of a stretch that is looked at as a whole.
+const PERIODS: f64 = 2.0;
+
+/// Fewest rows of it: a line and a wave have four values.
+const FEWEST_ROWS: usize = 12;
+
+/// Whether each row lies in a stretch of two periods of `frequency`, Hz, over which the tool stays `inside` and goes no farther than `nearest`, m or rad,
+/// and in which it is less deep where the force is greater. Whatever the contact's law, the deeper it is pushed the greater is the force of a surface
+/// that rests; a tool that is held softly gives way to one that moves.
+fn pushed(trial: &ContactTrial, is_inside: &dyn Fn(f64) -> bool, nearest: f64, frequency: f64) -> Vec<bool> {
+    let mut is_pushed = vec![false; trial.len()];
+    let period = 1.0 / frequency;
+    let (first, last) = (trial.time.first().copied().unwrap_or(0.0), trial.time.last().copied().unwrap_or(0.0));
+    for nth in 0..((last - first) / period) as usize {
+        let from = first + nth as f64 * period;
+        let [start, end] = [from, from + PERIODS * period].map(|end| trial.time.partition_point(|time| *time < end));
+        let own = &trial.position[start..end];
+        let [low, high] = own
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| [low.min(*place), high.max(*place)]);
+        let stays = end - start >= FEWEST_ROWS && high - low <= nearest && own.iter().all(|place| is_inside(*place));
+        if stays && gives_way(trial, start..end, frequency) {
+            is_pushed[start..end].fill(true);
+        }
+    }
+    is_pushed
+}
+
+/// Whether of the waves of `frequency`, Hz, in position and force of `rows`, each beside a straight line, one is against the other.
+fn gives_way(trial: &ContactTrial, rows: Range<usize>, frequency: f64) -> bool {
+    let mut normal = Matrix4::zeros();
+    let (mut of_position, mut of_force) = (Vector4::zeros(), Vector4::zeros());
+    let origin = trial.time[rows.start];
+    for row in rows {
+        let time = trial.time[row] - origin;
+        let (sine, cosine) = (std::f64::consts::TAU * frequency * time).sin_cos();
+        let regressors = RowVector4::new(1.0, time * frequency, sine, cosine);
+        normal += regressors.transpose() * regressors;
+        of_position += regressors.transpose() * trial.position[row];
+        of_force += regressors.transpose() * trial.force[row];
+    }
+    let Some(solve) = normal.cholesky() else { return false };
+    let [position, force] = [solve.solve(&of_position), solve.solve(&of_force)];
+    position[2] * force[2] + position[3] * force[3] < 0.0
 }
 
 /// Largest share of a wave's variance that lies between groups, over all its phases; `None` where there are no rows.
@@ -87,17 +138,22 @@ mod tests {
     use super::super::testing::TestContact;
     use super::*;
 
-    /// Whether a wave of `frequency` is in step with the test's tool where it goes as `depth` says.
-    fn is_in_step_with(depth: impl Fn(f64) -> f64, frequency: f64) -> bool {
+    /// Whether a wave of `frequency` is in step with the test's tool where it goes as `depth` says, on a spring whose surface is where `surface` says.
+    fn is_in_step_on(surface: impl Fn(f64) -> f64, depth: impl Fn(f64) -> f64, frequency: f64) -> bool {
         let mut trial = TestContact::PLAIN.trial(1);
         for row in 0..trial.len() {
             let time = trial.time[row];
             trial.position[row] = depth(time);
             trial.velocity[row] = (depth(time + 1e-4) - depth(time - 1e-4)) / 2e-4;
+            trial.force[row] = (TestContact::PLAIN.stiffness * (depth(time) - surface(time))).max(0.0);
         }
         let trials = [trial];
         let data = Data::new(&trials);
         is_in_step(&data, &nominal_fit(&data, &TestContact::nominal()), frequency)
+    }
+
+    fn is_in_step_with(depth: impl Fn(f64) -> f64, frequency: f64) -> bool {
+        is_in_step_on(|_| 0.0, depth, frequency)
     }
 
     #[test]
@@ -112,5 +168,20 @@ mod tests {
         // Three depths, each held for four seconds: slow motion is loud at the wave's frequency, and tells it all the same.
         let steps = |t: f64| 2e-3 * (1.0 + [0.0, 2.0, 1.0][((t / 4.0) as usize).min(2)]);
         assert!(!is_in_step_with(steps, wave));
+    }
+
+    /// Four depths, each held for two and a half seconds by a tool that a pulse of 0.8 mm moves by a tenth of a millimetre: whichever way it goes tells the
+    /// wave's phase. The same motion of a tool that goes so by itself is a law's.
+    #[test]
+    fn a_hold_that_the_wave_itself_moves_is_a_hold() {
+        let pulse = |t: f64| (std::f64::consts::TAU * 1.25 * t).sin();
+        let stairs = |t: f64| {
+            let (hold, within) = (((t / 3.0) as usize).min(3), t % 3.0);
+            let [from, to] = [hold, hold + 1].map(|hold| 2e-3 * [1.0, 3.0, 2.0, 4.0, 4.0][hold]);
+            from + (to - from) * ((within - 2.5) / 0.5).max(0.0)
+        };
+        let held = |t: f64| stairs(t) + 1e-4 * pulse(t);
+        assert!(!is_in_step_on(|t| 8e-4 * pulse(t), held, 1.25));
+        assert!(is_in_step_with(held, 1.25));
     }
 }
