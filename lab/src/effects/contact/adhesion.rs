@@ -77,6 +77,20 @@ static SPEC: EffectSpec = EffectSpec {
                 f64::INFINITY,
             )],
         },
+        Form {
+            name: "bond",
+            equation: "once touched, F is -pull_off_force height / release_height above the surface until it breaks at release_height",
+            parameters: &[
+                Parameter::new("pull_off_force", Word::new("N", "N m"), "greatest pull", 0.0, f64::INFINITY),
+                Parameter::new(
+                    "release_height",
+                    Word::new("m", "rad"),
+                    "height at which it breaks",
+                    0.0,
+                    f64::INFINITY,
+                ),
+            ],
+        },
     ],
     excited_by: "leaving the surface, slowly and often",
     resembles: &["force_bias", "lost_motion"],
@@ -90,6 +104,7 @@ mod form {
     pub const BRIDGE: usize = 3;
     pub const CAPILLARY: usize = 4;
     pub const SPHERE: usize = 5;
+    pub const BOND: usize = 6;
 }
 
 impl Effect for Adhesion {
@@ -161,6 +176,10 @@ impl Effect for Adhesion {
             form::CAPILLARY => {
                 let above = (-touch.position).max(0.0) / values[1].max(f64::MIN_POSITIVE);
                 touch.force -= values[0] * (1.0 - above).max(0.0);
+                return;
+            }
+            form::BOND => {
+                touch.force -= values[0] * (-touch.position).max(0.0) / values[1].max(f64::MIN_POSITIVE);
                 return;
             }
             _ => {}
@@ -345,7 +364,7 @@ mod tests {
             releases: 3,
             ..ExcitationStats::default()
         };
-        for form in [0, form::ATTRACTION, form::COHESIVE, form::BRIDGE, form::CAPILLARY, form::SPHERE] {
+        for form in [0, form::ATTRACTION, form::COHESIVE, form::BRIDGE, form::CAPILLARY, form::SPHERE, form::BOND] {
             let whole = |start: &Start| start.linear_parameters.is_empty() && start.values[0] == scene.pull;
             let starts: Vec<Start> = Adhesion.starts(form, &scene).into_iter().filter(whole).collect();
             assert!(!starts.is_empty(), "form {form}");
@@ -364,6 +383,20 @@ mod tests {
         let path = [-1e-3, 1e-3, 5e-3, 1e-9, -1e-3, -1.9e-3, -2.1e-3, -1e-3];
         let forces = path.map(|place| law.step(0.0, 1e-3, place, -1e-3, 0.0, 0.0));
         let expected = [0.0, 0.1 - 0.4, 0.5 - 0.4, -0.4, -0.2, -0.02, 0.0, 0.0];
+        for (force, expected) in forces.iter().zip(expected) {
+            assert!((force - expected).abs() < 1e-6, "{forces:?}");
+        }
+    }
+
+    /// A pull of its own stiffness, 200 N/m beside the spring's 100 N/m; what broke does not pull until the next touch.
+    #[test]
+    fn a_bond_stretches_by_its_own_stiffness_and_breaks_at_its_length() {
+        let contact = Contact { surface: 0.0, stiffness: 100.0, damping: 0.0, bilateral: false };
+        let actives = [ActiveEffect { effect: &Adhesion, form: form::BOND, values: &[0.4, 2e-3] }];
+        let mut law = ContactSimulator::new(contact, &actives);
+        let path = [-1e-3, 5e-3, 1e-9, -1e-3, -1.9e-3, -0.5e-3, -2.1e-3, -1e-3, 1e-3, -1e-3];
+        let forces = path.map(|place| law.step(0.0, 1e-3, place, -1e-3, 0.0, 0.0));
+        let expected = [0.0, 0.5, 0.0, -0.2, -0.38, -0.1, 0.0, 0.0, 0.1, -0.2];
         for (force, expected) in forces.iter().zip(expected) {
             assert!((force - expected).abs() < 1e-6, "{forces:?}");
         }
