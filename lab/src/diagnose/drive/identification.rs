@@ -79,10 +79,7 @@ fn identify_between_pushes(
         let own = stretches.iter().filter(|stretch| stretch.trial == number);
         trial.without(&own.map(|stretch| [stretch.start_s, stretch.end_s]).collect::<Vec<_>>())
     });
-    let is_found = |found: &Outcome| {
-        let names = found.chosen.model.names();
-        !found.named.is_empty() && first.rivalled.iter().all(|name| !names.contains(name))
-    };
+    let is_found = |found: &Outcome| !found.named.is_empty() && has_none(&found.chosen.model.names(), &first.rivalled);
     let Some(second) = identify_as_they_are(quiet.collect(), rig, seed, say).filter(is_found) else {
         return Some(first);
     };
@@ -91,6 +88,11 @@ fn identify_between_pushes(
         Some(whole) if whole.verdict == Verdict::Explained => whole,
         _ => Outcome { verdict: Verdict::PartlyExplained, outside_forces: stretches, ..second },
     })
+}
+
+/// Whether none of `names` is one of the `rivalled`, which were found to be something else.
+fn has_none(names: &[&str], rivalled: &[&str]) -> bool {
+    rivalled.iter().all(|name| !names.contains(name))
 }
 
 /// How the refitted nominal law stands before trials.

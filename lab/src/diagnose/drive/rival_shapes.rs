@@ -98,4 +98,19 @@ mod tests {
             assert_eq!(stands(&weight, &[Term::ConstantLoad], &[0.4]), [Term::ConstantLoad]);
         }
     }
+
+    /// Dry friction of 0.4 N beside a spring of 60 N/m that returns the slide: a load by place does far better in its place, and friction is there beside it.
+    #[test]
+    fn a_name_stands_that_is_worth_having_beside_the_shape() {
+        let drive = TestDrive { coulomb: 0.4, spring: 60.0, ..TestDrive::PLAIN };
+        let trials = [drive.trial(6.0, 6)];
+        let search = search_over(&trials, &drive);
+        let mut start = search.nominal.clone();
+        start.model.terms.push(Term::Coulomb);
+        start.values.push(0.4);
+        let rubs = search.polished(&start);
+        let rivals = search.promising(&rubs, 0);
+        assert!(rivals.iter().any(|rival| search.does_far_better(&search.polished(rival), &rubs)));
+        assert!(search.without_rivalled(&rubs).is_none());
+    }
 }

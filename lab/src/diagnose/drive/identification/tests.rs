@@ -342,3 +342,10 @@ fn what_depends_on_something_else_than_a_name_says_is_unknown() {
     assert!(damper.named.is_empty(), "{:?}", damper.chosen.model.names());
     assert_eq!(damper.verdict, Verdict::Unknown);
 }
+
+#[test]
+fn a_name_that_was_found_to_be_something_else_is_not_taken_up_from_a_part_of_the_recordings() {
+    let rivalled = ["effort_saturation"];
+    assert!(has_none(&["gravity_load"], &rivalled) && has_none(&["effort_saturation"], &[]));
+    assert!(!has_none(&["effort_saturation", "gravity_load"], &rivalled));
+}
