@@ -11,6 +11,7 @@ pub mod check;
 pub mod command;
 pub mod contact;
 pub mod drive;
+pub mod ends;
 pub mod evidence;
 pub mod experiment;
 pub mod golden_section;

@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
+use super::ends::ends;
+
 /// Inner product.
 #[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -35,8 +37,7 @@ const STRETCHES: usize = 20;
 /// follow any curve over it, and stretches over rows where they are independent of it; 0 where one does not vary.
 #[must_use]
 pub fn correlation_ratio(along: &[f64], values: &[f64]) -> f64 {
-    let [low, high] =
-        along.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(*at), high.max(*at)]);
+    let [low, high] = ends(along.iter().copied());
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     let mut stretches = [(0.0, 0.0); STRETCHES];
     let mut squares = 0.0;

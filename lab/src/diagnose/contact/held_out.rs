@@ -4,6 +4,7 @@ use super::criteria::SEEN_BY_BOTH;
 use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::model::{ContactModel, index};
+use crate::diagnose::ends::ends;
 
 /// Two halves of the rows: every other trial, or every other block of a single one, of which there are so many that both halves see every
 /// force. Each is fitted once and judged once.
@@ -46,10 +47,8 @@ impl Folds {
         let range = |wanted: Option<bool>| {
             let counted =
                 rows().filter(|((_, weight), is_first)| **weight > 0.0 && wanted.is_none_or(|half| half == **is_first));
-            let ends = counted.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], ((force, _), _)| {
-                [low.min(*force), high.max(*force)]
-            });
-            ends[1] - ends[0]
+            let [low, high] = ends(counted.map(|((force, _), _)| *force));
+            high - low
         };
         [true, false].into_iter().all(|half| range(Some(half)) >= SEEN_BY_BOTH * range(None))
     }

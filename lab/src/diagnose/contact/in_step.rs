@@ -8,6 +8,7 @@ use super::criteria::LARGEST_SHARE_IN_STEP;
 use super::data::Data;
 use super::fit::Fit;
 use super::trial::ContactTrial;
+use crate::diagnose::ends::ends;
 
 /// Depths that rows are grouped by, each way and at rest.
 const DEPTHS: usize = 20;
@@ -39,15 +40,12 @@ pub fn is_in_step(data: &Data<'_>, fit: &Fit, frequency: f64) -> bool {
 fn groups(trial: &ContactTrial, surface: Option<f64>, frequency: f64) -> Vec<Option<usize>> {
     let is_inside = |place: f64| surface.is_none_or(|surface| place > surface);
     let inside = || (0..trial.len()).filter(|row| is_inside(trial.position[*row]));
-    let ends = inside().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], row| {
-        [low.min(trial.position[row]), high.max(trial.position[row])]
-    });
+    let [lowest, deepest] = ends(inside().map(|row| trial.position[row]));
     let square = inside().map(|row| trial.velocity[row].powi(2)).sum::<f64>() / inside().count().max(1) as f64;
     let rest = AT_REST * square.sqrt();
-    let nearest = (ends[1] - ends[0]) / DEPTHS as f64;
-    let is_pushed = pushed(trial, &is_inside, nearest, frequency);
+    let is_pushed = pushed(trial, &is_inside, (deepest - lowest) / DEPTHS as f64, frequency);
     let group = |row: usize| {
-        let depth = (trial.position[row] - ends[0]) / (ends[1] - ends[0]).max(f64::MIN_POSITIVE);
+        let depth = (trial.position[row] - lowest) / (deepest - lowest).max(f64::MIN_POSITIVE);
         let way = match trial.velocity[row] {
             _ if is_pushed[row] => 1,
             speed if speed < -rest => 0,
@@ -66,8 +64,8 @@ const PERIODS: f64 = 2.0;
 const FEWEST_ROWS: usize = 12;
 
 /// Whether each row lies in a stretch of two periods of `frequency`, Hz, over which the tool stays `inside` and goes no farther than `nearest`, m or rad,
-/// and in which it is less deep where the force is greater. Whatever the contact's law, the deeper it is pushed the greater is the force of a surface
-/// that rests; a tool that is held softly gives way to one that moves.
+/// and in which it is less deep where the force is greater. A surface that rests pushes back the more the deeper the tool is, unless its spring falls; a
+/// tool that is held softly gives way to one that moves.
 fn pushed(trial: &ContactTrial, is_inside: &dyn Fn(f64) -> bool, nearest: f64, frequency: f64) -> Vec<bool> {
     let mut is_pushed = vec![false; trial.len()];
     let period = 1.0 / frequency;
@@ -76,10 +74,8 @@ fn pushed(trial: &ContactTrial, is_inside: &dyn Fn(f64) -> bool, nearest: f64, f
         let from = first + nth as f64 * period;
         let [start, end] = [from, from + PERIODS * period].map(|end| trial.time.partition_point(|time| *time < end));
         let own = &trial.position[start..end];
-        let [low, high] = own
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| [low.min(*place), high.max(*place)]);
-        let stays = end - start >= FEWEST_ROWS && high - low <= nearest && own.iter().all(|place| is_inside(*place));
+        let [low, high] = ends(own.iter().copied());
+        let stays = own.len() >= FEWEST_ROWS && high - low <= nearest && is_inside(low);
         if stays && gives_way(trial, start..end, frequency) {
             is_pushed[start..end].fill(true);
         }

@@ -2,6 +2,7 @@
 
 use super::criteria::NOTABLE_POWER;
 use super::trial::ContactTrial;
+use crate::diagnose::ends::ends;
 use crate::effects::ExcitationStats;
 
 /// Sizes of the recordings.
@@ -48,8 +49,7 @@ impl Scales {
     #[must_use]
     pub fn of(trials: &[ContactTrial], surface: f64, bilateral: bool, given_stiffness: f64, is_rotary: bool) -> Self {
         let range = |pick: &dyn Fn(&ContactTrial) -> &Vec<f64>| {
-            let all = trials.iter().flat_map(|trial| pick(trial).iter().copied());
-            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+            ends(trials.iter().flat_map(|trial| pick(trial).iter().copied()))
         };
         let positions = range(&|trial| &trial.position);
         let forces = range(&|trial| &trial.force);

@@ -23,7 +23,7 @@ pub enum Along {
     Time,
     /// Position.
     Place,
-    /// Velocity with its sign; at rest it is of two minds, as a damper that brakes one way.
+    /// Velocity with its sign; at rest it has two values, one for each way, as of a damper that brakes one way.
     Velocity,
 }
 

@@ -3,6 +3,7 @@
 use super::criteria::{FEWEST_STILL_WINDOWS, STILL_PART, STILL_PERIODS, STILL_STEPS};
 use super::held_out::rms;
 use super::trial::DriveTrial;
+use crate::diagnose::ends::ends;
 use crate::diagnose::median::median;
 
 /// Root mean square of the force `missing`, a column a trial, about its trend in windows in which the drive stands still, N or N m: that of the median window, so
@@ -31,8 +32,8 @@ pub fn noise_at_rest(
 }
 
 fn range(values: &[f64]) -> f64 {
-    let ends = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |ends, x| [ends[0].min(*x), ends[1].max(*x)]);
-    ends[1] - ends[0]
+    let [low, high] = ends(values.iter().copied());
+    high - low
 }
 
 /// `values` less the straight line that is closest to them.

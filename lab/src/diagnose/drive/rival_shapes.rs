@@ -18,29 +18,30 @@ impl Search<'_> {
     /// what a link moves can look like any shape.
     #[must_use]
     pub fn without_rivalled(&self, fit: &Fit) -> Option<Fit> {
-        if fit.model.has_link() {
+        if fit.model.has_link() || fit.model == self.nominal.model {
             return None;
         }
+        let sampled = sample(&self.data, &self.disturbance(fit));
+        let data = Data { trials: sampled.as_deref().unwrap_or(self.data.trials), ..self.data };
+        let base = quickly_fitted(&data, fit);
         let own = self.nominal.model.terms.len();
-        let told = (own..fit.model.terms.len()).filter(|at| fit.model.terms[*at].is_told());
-        let mut rivalled =
-            told.filter(|at| self.promising(fit, *at).iter().any(|rival| self.is_rival(rival, fit, *at)));
-        let at = rivalled.next()?;
+        let mut told = (own..fit.model.terms.len()).filter(|at| fit.model.terms[*at].is_told());
+        let is_rivalled = |at: &usize| {
+            let mut promising = self.with_shapes(&data, fit, *at).filter(|rival| self.does_far_better(rival, &base));
+            promising.any(|rival| self.is_rival(&rival, fit, *at))
+        };
+        let at = told.find(is_rivalled)?;
         let (model, values) = fit.model.without(at, &fit.values);
         Some(self.lessened(fit, model, values))
     }
 
-    /// `fit` with each shape that does far better, on some of the rows, in the place of term `at`.
-    fn promising(&self, fit: &Fit, at: usize) -> Vec<Fit> {
-        let sampled = sample(&self.data, &self.disturbance(fit));
-        let data = Data { trials: sampled.as_deref().unwrap_or(self.data.trials), ..self.data };
-        let quick = |start: &Fit| fit::fit(&data, &start.model, &start.values, start.noise, Effort::QUICK);
-        let base = quick(fit);
+    /// `fit` with each shape of another kind in the place of term `at`, fitted quickly to `data`.
+    fn with_shapes(&self, data: &Data<'_>, fit: &Fit, at: usize) -> impl Iterator<Item = Fit> {
         let (model, values) = fit.model.without(at, &fit.values);
-        let less = quick(&Fit { model, values, ..fit.clone() });
+        let less = quickly_fitted(data, &Fit { model, values, ..fit.clone() });
         let shapes = courses(&self.scales, &less.model).chain([load_by_place(&self.scales)]);
-        let others = shapes.filter(|shape| !is_of_one_kind(shape, &fit.model.terms[at]));
-        others.map(|shape| quick(&shaped(&less, shape))).filter(|rival| self.does_far_better(rival, &base)).collect()
+        let others = shapes.filter(move |shape| !is_of_one_kind(shape, &fit.model.terms[at]));
+        others.map(move |shape| quickly_fitted(data, &shaped(&less, shape)))
     }
 
     /// Whether `rival`, fitted in full, does far better than `fit`, and term `at` of this is not worth having beside it.
@@ -58,6 +59,11 @@ impl Search<'_> {
     fn does_far_better(&self, rival: &Fit, fit: &Fit) -> bool {
         is_likelier(rival, fit) && self.leaves_far_more(fit, rival)
     }
+}
+
+/// `start`, fitted to `data` as far as a comparison needs.
+fn quickly_fitted(data: &Data<'_>, start: &Fit) -> Fit {
+    fit::fit(data, &start.model, &start.values, start.noise, Effort::QUICK)
 }
 
 /// Whether `term` is of what `shape` is the free form of: beside it, it says more and no other.
@@ -109,8 +115,8 @@ mod tests {
         start.model.terms.push(Term::Coulomb);
         start.values.push(0.4);
         let rubs = search.polished(&start);
-        let rivals = search.promising(&rubs, 0);
-        assert!(rivals.iter().any(|rival| search.does_far_better(&search.polished(rival), &rubs)));
+        let mut rivals = search.with_shapes(&search.data, &rubs, 0);
+        assert!(rivals.any(|rival| search.does_far_better(&search.polished(&rival), &rubs)));
         assert!(search.without_rivalled(&rubs).is_none());
     }
 }

@@ -22,7 +22,7 @@ pub fn load_by_place(scales: &Scales) -> Term {
 }
 
 /// Friction and effort that change, of those that `model` has.
-pub fn courses(scales: &Scales, model: &Model) -> impl Iterator<Item = Term> {
+pub fn courses(scales: &Scales, model: &Model) -> impl Iterator<Item = Term> + use<> {
     let scales = *scales;
     let rubs = model.terms.iter().any(Term::is_friction);
     let all = [

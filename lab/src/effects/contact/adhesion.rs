@@ -80,16 +80,7 @@ static SPEC: EffectSpec = EffectSpec {
         Form {
             name: "bond",
             equation: "once touched, F is -pull_off_force height / release_height above the surface until it breaks at release_height",
-            parameters: &[
-                Parameter::new("pull_off_force", Word::new("N", "N m"), "greatest pull", 0.0, f64::INFINITY),
-                Parameter::new(
-                    "release_height",
-                    Word::new("m", "rad"),
-                    "height at which it breaks",
-                    0.0,
-                    f64::INFINITY,
-                ),
-            ],
+            parameters: &[PULL, RELEASE_HEIGHT],
         },
     ],
     excited_by: "leaving the surface, slowly and often",
