@@ -146,7 +146,7 @@ impl Recorded<'_> {
         let is_recorded = contact::prepare::is_recorded(&rig, self.trials);
         let Some(nominal) = contact::prepare::nominal(&rig, known).filter(|_| is_recorded) else { return Ok(None) };
         let [fine, coarse] = contact::prepare::trials(self.trials, self.figures);
-        let circumstances = Circumstances { is_one_speed: self.is_one_speed, refuted: refuted.to_vec() };
+        let circumstances = Circumstances { is_one_speed: self.is_one_speed, refuted: with_kin(refuted) };
         Ok(contact::outcome::identify(fine, &coarse, &nominal, circumstances, self.say))
     }
 
@@ -164,6 +164,14 @@ impl Recorded<'_> {
         let nominal = drive::prepare::nominal(self.rig, trials, known).filter(|_| is_recorded);
         Ok(nominal.map(|nominal| (drive::prepare::trials(self.rig, trials), nominal)))
     }
+}
+
+/// `refuted`, and what would take its place: a force that is added to the sensor's own is as much felt where it wanders as where it stays. Without
+/// that each is told in turn, and the search is made anew for each.
+fn with_kin(refuted: &[&'static str]) -> Vec<&'static str> {
+    const ADDED: [&str; 2] = ["force_bias", "force_drift"];
+    let others: &[&str] = if refuted.iter().any(|name| ADDED.contains(name)) { &ADDED } else { &[] };
+    refuted.iter().chain(others.iter().filter(|name| !refuted.contains(name))).copied().collect()
 }
 
 /// Whether nothing is missing in the drive.
@@ -185,4 +193,17 @@ fn is_told(contact: &contact::outcome::Outcome, name: &str) -> bool {
     let terms = &contact.chosen.model.terms;
     let names = |name: &str| contact.named.iter().any(|named| terms[named.at].name() == name);
     names(name) || (name == "channel_delay" && names("force_lag"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_kin;
+
+    /// A zero that is felt as a force is felt where it wanders, too; a wrong factor is another matter.
+    #[test]
+    fn what_the_drive_feels_of_a_zero_is_felt_however_it_moves() {
+        assert_eq!(with_kin(&["force_bias"]), ["force_bias", "force_drift"]);
+        assert_eq!(with_kin(&["force_gain", "force_drift"]), ["force_gain", "force_drift", "force_bias"]);
+        assert_eq!(with_kin(&["force_gain"]), ["force_gain"]);
+    }
 }

@@ -70,17 +70,10 @@ fn found_on(data: &Data<'_>, base: &Fit, side: Side) -> Vec<Fit> {
     let mut fits: Vec<Fit> = begun.into_par_iter().map(|start| turn(data, start)).collect();
     fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     fits.truncate(2 * FOLLOWED);
-    let followed = |mut fit: Fit| {
-        for _ in 1..TURNS {
-            let before = fit.log_likelihood;
-            fit = turn(data, fit);
-            if fit.log_likelihood - before < 1.0 {
-                break;
-            }
-        }
-        fit
-    };
-    let mut fits: Vec<Fit> = fits.into_par_iter().map(followed).collect();
+    let mut fits: Vec<Fit> = fits.into_par_iter().map(|fit| followed(data, fit)).collect();
+    fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
+    let closed = fits.iter().find_map(without_gap).map(|link| followed(data, link));
+    fits.extend(closed);
     fits.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     let mut best: Vec<Fit> = Vec::new();
     for fit in fits {
@@ -119,6 +112,37 @@ fn turn(data: &Data<'_>, mut fit: Fit) -> Fit {
     fit.log_likelihood = search_noise(data, &fit.model, &fit.values, &mut fit.noise);
     fit
 }
+
+/// `fit` led on turn by turn, until one gains less than a nat.
+fn followed(data: &Data<'_>, mut fit: Fit) -> Fit {
+    for _ in 1..TURNS {
+        let before = fit.log_likelihood;
+        fit = turn(data, fit);
+        if fit.log_likelihood - before < 1.0 {
+            break;
+        }
+    }
+    fit
+}
+
+/// The weak link that `fit`, whose last term is a play, is where the gap of that has closed: starts of a link alone can miss the swing and the
+/// damping that those of a play come to, of which there are more. `None` where it plays.
+fn without_gap(fit: &Fit) -> Option<Fit> {
+    let last = fit.model.terms.len() - 1;
+    let Term::Play(side) = fit.model.terms[last] else { return None };
+    let gap = fit.model.values_of(last).start + GAP;
+    let (value, range) = (fit.values[gap], &fit.model.ranges()[gap]);
+    if !range.is_at_end(value) || value > range.low.midpoint(range.high) {
+        return None;
+    }
+    let mut link = fit.clone();
+    link.model.terms[last] = Term::Compliance(side);
+    link.values.remove(gap);
+    Some(link)
+}
+
+/// Where the gap stands among the values of a play, which a weak link lacks.
+const GAP: usize = 3;
 
 /// Steps of the search about a play: of the logarithms of inertia, viscous friction, stiffness, damping and gap, and of the load's shares
 /// of inertia and friction; and the part of them at which it ends.
@@ -260,4 +284,27 @@ pub fn liveliest(data: &Data<'_>, disturbance: &[Vec<f64>]) -> DriveTrial {
     }
     let (_, at, stretch) = best;
     data.trials[at].slice(stretch)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::fit_of;
+    use super::*;
+
+    /// A play that closed is a link of the same values; one of some width stays what it is, and so does one at the widest that is searched.
+    #[test]
+    fn a_play_whose_gap_has_closed_is_a_weak_link() {
+        let play = |gap: f64| fit_of(&[Term::Coulomb, Term::Play(Side::Motor)], &[0.2, 500.0, 0.3, 0.4, gap, 0.6]);
+        let range = {
+            let fit = play(1e-4);
+            fit.model.ranges()[fit.model.values_of(1).start + GAP]
+        };
+        let link = without_gap(&play(range.low)).expect("its gap has closed");
+        assert_eq!(link.model.terms, [Term::Coulomb, Term::Compliance(Side::Motor)]);
+        assert_eq!(link.values[link.model.values_of(1)], [500.0, 0.3, 0.4, 0.6]);
+        assert_eq!(link.values.len(), link.model.ranges().len());
+        assert!(without_gap(&play(1e-4)).is_none());
+        assert!(without_gap(&play(range.high)).is_none());
+        assert!(without_gap(&fit_of(&[Term::Compliance(Side::Motor)], &[500.0, 0.3, 0.4, 0.6])).is_none());
+    }
 }
