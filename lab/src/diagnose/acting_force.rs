@@ -1,5 +1,6 @@
 //! The force that acted on the drive, where the contact told what the sensor made of it.
 
+use super::contact::crosstalk::Crosstalk;
 use super::contact::fit::Fit;
 use super::contact::outcome::Outcome;
 use super::contact::pruning::without_term;
@@ -38,10 +39,13 @@ fn sensor_terms(contact: &Outcome) -> Vec<usize> {
 /// `trials` with the force as it acted, N or N m: what the named effects of the sensor add to the law's reading along the motion is taken
 /// off, in the means of rows that the contact was looked at in. The drive would take a zero for a load, and what a clipped reading
 /// misses for a force of its own. A zero that wanders does so beside the straight lines of its law, too: what is left is followed as a
-/// random walk.
+/// random walk. Effort that the reading holds is taken off, too: the drive would be told its own friction for a force.
 #[must_use]
 pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
     let sensors = sensor_terms(contact);
+    if let Some(crosstalk) = contact.crosstalk {
+        return trials.iter().map(|trial| without_effort(trial, crosstalk)).collect();
+    }
     if sensors.is_empty() {
         return trials.to_vec();
     }
@@ -65,6 +69,14 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
         take_off(force, &trial.time, &added, looked_at);
     }
     trials
+}
+
+/// `trial` without the effort in its force.
+fn without_effort(trial: &Recording, crosstalk: Crosstalk) -> Recording {
+    let mut trial = trial.clone();
+    let added = crosstalk.added(trial.effort.as_deref().unwrap_or_default(), trial.period());
+    trial.force.iter_mut().flatten().zip(added).for_each(|(force, added)| *force -= added);
+    trial
 }
 
 /// Trials with the force that a contact's law gives along the motion.
@@ -177,6 +189,29 @@ mod tests {
             // The level's own error is 6 mN by sqrt(q r) / 2 of the walk and the sensor's noise; the law's values add to it.
             assert!(error < 10e-3, "{error} N");
         }
+    }
+
+    /// A quarter of an effort of 2 N, and of one that steps by 2 N in the row before the last and is forgotten to a half from row to row.
+    #[test]
+    fn effort_in_the_reading_did_not_act() {
+        let mut recordings = [1, 2].map(|seed| TestContact::PLAIN.recording(seed));
+        let rows = recordings[0].time.len();
+        recordings[0].effort = Some(vec![2.0; rows]);
+        recordings[1].effort = Some((0..rows).map(|row| if row + 2 < rows { 0.0 } else { 2.0 }).collect());
+        let trials = || recordings.each_ref().map(TestContact::seen).to_vec();
+        let mut contact =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        let mut taken_off = |memory_s: f64, number: usize| {
+            contact.crosstalk = Some(Crosstalk { part: 0.25, memory_s });
+            let acted = &as_it_acted(&contact, &recordings)[number];
+            let pairs = recordings[number].force.iter().flatten().zip(acted.force.iter().flatten());
+            pairs.map(|(shown, acted)| shown - acted).skip(rows - 3).collect::<Vec<_>>()
+        };
+        // Forces of some newtons, to their rounding.
+        let is = |found: Vec<f64>, expected: [f64; 3]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12);
+        assert!(is(taken_off(f64::INFINITY, 0), [0.5; 3]));
+        let halved = recordings[1].period() / std::f64::consts::LN_2;
+        assert!(is(taken_off(halved, 1), [0.0, 0.5, 0.25]));
     }
 
     /// Variances of a fit's prediction over those of the rows sum to the number of values (the leverages), whatever the law and however its values

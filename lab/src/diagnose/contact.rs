@@ -9,6 +9,7 @@ mod colour;
 pub mod composed;
 mod confirmation;
 pub mod criteria;
+pub mod crosstalk;
 pub mod data;
 pub mod fall;
 pub mod fit;

@@ -11,6 +11,7 @@ use super::rest::Rest;
 use super::search::Search;
 use crate::diagnose::evidence::{NamedTerm, share_beyond_noise};
 use crate::diagnose::model_comparison::likelihood_ratio_p;
+use crate::effects::ExcitationStats;
 
 /// The effects that unseen rows confirm, with what each takes of them.
 pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
@@ -45,6 +46,10 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
             fit = without[nth - first].0.clone();
             continue;
         }
+        if let Some(at) = unidentified(search, &fit, first) {
+            fit = without[at - first].0.clone();
+            continue;
+        }
         let named = without.iter().enumerate().map(|(nth, (less, left, without))| NamedTerm {
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
@@ -64,14 +69,43 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
 fn undetermined(search: &Search<'_>, fit: &Fit, terms: impl Iterator<Item = usize>) -> Option<usize> {
     let mut terms = terms.peekable();
     terms.peek()?;
-    let data = &search.data;
-    let ends = intervals(data, fit, &Rest::of(data, fit)).ends;
-    let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
-    let excitation = fit.model.scales.excitation(data.trials, stiffness, surface, fit.model.bilateral);
-    terms.find(|&at| {
-        let size = fit.model.size_of(at, &excitation);
-        size.is_some_and(|size| ends[size][0] <= 0.0 && ends[size][1] >= 0.0)
+    let sizes = Sizes::of(search, fit);
+    terms.find(|at| sizes.of_term(*at).is_some_and(|[low, high]| low <= 0.0 && high >= 0.0))
+}
+
+/// The last term from `first` on with one size whose 95 % interval is all of the range that it is looked for in: the recordings do not show it
+/// (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923), and other values stand for it.
+fn unidentified(search: &Search<'_>, fit: &Fit, first: usize) -> Option<usize> {
+    let mut terms = (first..fit.model.terms.len()).rev().peekable();
+    terms.peek()?;
+    let sizes = Sizes::of(search, fit);
+    let ranges = fit.model.ranges(&fit.values);
+    terms.find(|at| {
+        let all = fit.model.size_of(*at, &sizes.excitation).map(|size| &ranges[size]);
+        all.zip(sizes.of_term(*at)).is_some_and(|(range, [low, high])| low <= range.low && high >= range.high)
     })
+}
+
+/// The 95 % intervals of the values of a fit, and what its sizes are told by.
+struct Sizes<'a> {
+    fit: &'a Fit,
+    ends: Vec<[f64; 2]>,
+    excitation: ExcitationStats,
+}
+
+impl<'a> Sizes<'a> {
+    fn of(search: &Search<'_>, fit: &'a Fit) -> Self {
+        let data = &search.data;
+        let ends = intervals(data, fit, &Rest::of(data, fit)).ends;
+        let [stiffness, surface] = [index::STIFFNESS, index::SURFACE].map(|at| fit.values[at]);
+        let excitation = fit.model.scales.excitation(data.trials, stiffness, surface, fit.model.bilateral);
+        Self { fit, ends, excitation }
+    }
+
+    /// That of the size of term `at`, where it has one.
+    fn of_term(&self, at: usize) -> Option<[f64; 2]> {
+        self.fit.model.size_of(at, &self.excitation).map(|size| self.ends[size])
+    }
 }
 
 /// Share of the mismatch that a law takes which brings what is `left` down to `held`, all weighted squares of unseen rows: of what is left beyond
@@ -139,5 +173,23 @@ mod tests {
             undetermined(&search, &fit, 0..2)
         };
         assert_eq!([0.0, 0.4].map(undetermined_beside), [Some(1), None]);
+    }
+
+    /// A stiffness that settles, on a contact as stiff as it is, and on one that is all but gone, where any part of it is as good as none.
+    #[test]
+    fn an_effect_whose_size_may_be_anything_is_not_shown() {
+        let trials = [1, 2].map(|seed| TestContact::PLAIN.trial(seed));
+        let [data, coarse] = [(), ()].map(|()| Data::new(&trials));
+        let nominal = nominal_fit(&data, &TestContact::nominal());
+        let settles = Term { effect: crate::effects::find("time_varying_stiffness").unwrap(), form: 4 };
+        let search = Search { nominal: nominal.clone(), data, coarse, circumstances: Circumstances::default() };
+        let model = nominal.model.with(settles);
+        let of_stiffness = |stiffness: f64| {
+            let mut values: Vec<f64> = nominal.values.iter().copied().chain([0.1, 3.0]).collect();
+            values[index::STIFFNESS] = stiffness;
+            let energy = crate::diagnose::linalg::energy(&search.data.weighted_residual(&model, &values));
+            unidentified(&search, &Fit { model: model.clone(), values, energy }, 0)
+        };
+        assert_eq!([300.0, 1e-9].map(of_stiffness), [None, Some(0)]);
     }
 }

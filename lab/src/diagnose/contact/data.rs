@@ -35,6 +35,12 @@ impl<'a> Data<'a> {
         Self { trials, weights: weights.collect(), noise, noise_factor: 1.0 }
     }
 
+    /// The same weights and noise for `trials`, which have the same rows.
+    #[must_use]
+    pub fn of<'b>(&self, trials: &'b [ContactTrial]) -> Data<'b> {
+        Data { trials, noise: self.noise.clone(), weights: self.weights.clone(), noise_factor: self.noise_factor }
+    }
+
     /// Rows that count.
     #[must_use]
     pub fn rows(&self) -> usize {

@@ -3,6 +3,7 @@
 use super::alternative::{Alternative, alternatives};
 use super::circumstances::Circumstances;
 use super::confirmation::believed;
+use super::crosstalk::{Crosstalk, crosstalk};
 use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::held_out::{Folds, rms};
@@ -44,6 +45,8 @@ pub struct Outcome {
     pub named: Vec<NamedTerm>,
     /// What else would do.
     pub alternatives: Vec<Alternative>,
+    /// What of the effort the force reading seems to hold, where that is likelier than the effects that were found.
+    pub crosstalk: Option<Crosstalk>,
     /// For what is left beside what is named, where that is notable: a learned element, where unseen rows pay for one.
     pub learned: Option<LearnedCurve>,
     /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects, on rows that no fit saw, a
@@ -113,7 +116,8 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let given = as_given(search, start);
     let refitted = folds.held_out(data, &search.nominal);
     let (mut fit, mut improved, mut named) = believed(search, &folds, chosen.fit.clone());
-    if takes_too_little(search, &fit, &named) || acts_at_a_distance(search, &fit, &named) {
+    let crosstalk = crosstalk(search, &fit);
+    if crosstalk.is_some() || takes_too_little(search, &fit, &named) || acts_at_a_distance(search, &fit, &named) {
         // Something is there, and it is not that.
         fit = search.nominal.clone();
         improved = folds.held_out(data, &fit);
@@ -130,6 +134,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         noise: Vec::new(),
         weights: Vec::new(),
         verdict,
+        crosstalk,
         learned,
         nominal: search.nominal.clone(),
         known_terms: search.nominal.model.terms.len(),

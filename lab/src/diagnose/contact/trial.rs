@@ -32,7 +32,9 @@ pub struct ContactTrial {
     pub acceleration_variance: Vec<f64>,
     /// Force reading, N or N m.
     pub force: Vec<f64>,
-    /// Variance of a row of it by the sensor alone.
+    /// Effort of the drive, N or N m, where it is recorded.
+    pub effort: Option<Vec<f64>>,
+    /// Variance of a row of the force by the sensor alone.
     pub force_variance: f64,
     /// Whether a row is a measurement.
     pub counts: Vec<bool>,
@@ -80,6 +82,7 @@ impl ContactTrial {
             velocity_variance: mean(&smooth.velocity_variance),
             acceleration_variance: mean(&smooth.acceleration_variance),
             force: mean(&force),
+            effort: recording.effort.as_deref().map(mean),
             force_variance: if coarse { force_variance.max(rounding * rounding) } else { force_variance },
             counts: counts.chunks_exact(every).map(|rows| rows.iter().all(|counts| *counts)).collect(),
             encoder_steps,

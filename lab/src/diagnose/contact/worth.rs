@@ -99,7 +99,7 @@ impl Search<'_> {
     }
 
     /// What a value more has to gain, nats: half the logarithm of the rows that tell more than one (G. Schwarz, Ann. Stat. 6 (1978) 461).
-    fn price_of_value(&self, rest: &Rest) -> f64 {
+    pub(super) fn price_of_value(&self, rest: &Rest) -> f64 {
         0.5 * (self.data.rows() as f64 / rest.correlated_rows).max(1.0).ln()
     }
 

@@ -6,6 +6,7 @@ use super::contact_residual::contact_residual;
 use super::correlation;
 use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, Location, Nominal, Physics, PlotData};
 use super::summary;
+use crate::diagnose::contact::crosstalk::Crosstalk;
 use crate::diagnose::contact::data::Data;
 use crate::diagnose::contact::held_out::rms;
 use crate::diagnose::contact::learned::LearnedCurve;
@@ -290,6 +291,19 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
     let mut tell = |code: &'static str, place: &str, text: &str| {
         findings.push(Finding { code, grave: false, place: place.to_owned(), text: text.to_owned() });
     };
+    if let Some(Crosstalk { part, memory_s }) = outcome.crosstalk {
+        let what = if memory_s.is_finite() {
+            format!(", its steps, forgotten within {},", quantity::rounded(memory_s, "s", 2))
+        } else {
+            String::new()
+        };
+        let text = format!(
+            "The force reading follows the drive's effort{what} by a factor of {}: that beside the plain contact law leaves less than the effects \
+             that were fitted in its place. The effort couples into the reading, by its wires, its ground or the frame.",
+            quantity::short(part)
+        );
+        tell("effort_in_force", "force", &text);
+    }
     if outcome.is_limited_by_rounding {
         tell(
             "quantization_limits_residual",
