@@ -1,8 +1,11 @@
 //! Which of the effects that were found rows confirm that no fit saw, and the recordings tell from none.
 
-use super::criteria::{COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_TOLD_SHARE, NOISE_POWER_KNOWN_TO};
+use super::criteria::{
+    COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_TOLD_SHARE, NOISE_POWER_KNOWN_TO, NOTABLE_POWER,
+};
 use super::data::Data;
 use super::fit::Fit;
+use super::free_motion::left_by_height_and_law;
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::intervals;
 use super::lines::line_beyond;
@@ -31,7 +34,10 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
         // A line is no part of what a law leaves.
         let is_confirmed = |(less, left, without): &(Fit, f64, f64)| match line_beyond(&fit, less) {
             Some(_) => left - held.energy > LEAST_LINE_POWER * expected,
-            None => share(*left) >= LEAST_HELD_OUT_SHARE && !is_within_rounding(data, *without),
+            None => {
+                share(*left) >= LEAST_HELD_OUT_SHARE
+                    && (!is_within_rounding(data, *without) || acts_in_free_motion(data, &fit, less))
+            }
         };
         let needless = (0..without.len()).filter(|nth| !is_confirmed(&without[*nth]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
@@ -120,6 +126,16 @@ fn is_within_rounding(data: &Data<'_>, without: f64) -> bool {
     without < data.expected_noise() && data.is_limited_by_rounding()
 }
 
+/// Whether `less` leaves notably more in the free motion before the surface of `more` than that does, over what is stated: there the encoder's rounding
+/// makes no force.
+fn acts_in_free_motion(data: &Data<'_>, more: &Fit, less: &Fit) -> bool {
+    let left = |law: &Fit| {
+        let residual = data.residuals(&law.model, &law.values);
+        left_by_height_and_law(data.trials, more, &data.noise, &residual).map(|[_, by_law]| by_law)
+    };
+    left(less).zip(left(more)).is_some_and(|(less, more)| less > NOTABLE_POWER * more.max(1.0))
+}
+
 /// Values that are fitted in `more` and not in `less`.
 fn added_values(more: &Fit, less: &Fit) -> usize {
     more.model.free_count().saturating_sub(less.model.free_count())
@@ -155,6 +171,23 @@ mod tests {
         assert!(!is_within_rounding(&plain, 0.5 * FORCE_NOISE));
         let rounded = Data { noise: vec![vec![(10.0 * FORCE_NOISE).powi(2); trials[0].len()]], ..plain };
         assert!(is_within_rounding(&rounded, 9.9 * FORCE_NOISE) && !is_within_rounding(&rounded, 10.1 * FORCE_NOISE));
+    }
+
+    /// A zero is off by one and a half of the noise, and a spring stiffens: rounding in contact can be the one and not the other.
+    #[test]
+    fn rounding_makes_no_force_where_nothing_is_touched() {
+        let acts = |contact: TestContact, name: &str, form: usize, start: &[f64]| {
+            let trials = [contact.trial(1)];
+            let data = Data::new(&trials);
+            let less = nominal_fit(&data, &TestContact::nominal());
+            let model = less.model.with(Term { effect: crate::effects::find(name).unwrap(), form });
+            let values: Vec<f64> = less.values.iter().chain(start).copied().collect();
+            let more = data.fit(&model, &values, Effort::FULL);
+            assert!(more.energy < 0.9 * less.energy, "{name}: {} of {}", more.energy, less.energy);
+            acts_in_free_motion(&data, &more, &less)
+        };
+        assert!(acts(TestContact { zero: 1.5 * FORCE_NOISE, ..TestContact::PLAIN }, "force_bias", 0, &[0.01]));
+        assert!(!acts(TestContact { exponent: 1.5, ..TestContact::PLAIN }, "nonlinear_stiffness", 0, &[1.4, 4e-3]));
     }
 
     /// A memory with a bias beside it that is there or is not.
