@@ -120,10 +120,10 @@ fn share_taken(left: f64, held: f64, expected: f64) -> f64 {
     share_beyond_noise(left, held, expected, NOISE_POWER_KNOWN_TO.value())
 }
 
-/// Whether a law that leaves `without`, N or N m in root mean square, leaves no more than the encoder's rounding does where that is most of the
-/// sensors' noise: it repeats with the place, and any law of the place takes some of it.
+/// Whether a law that leaves `without`, N or N m in root mean square, leaves no more than the sensors do, where the encoder's rounding is most of their
+/// noise: it repeats with the place, and any law of the place takes some of it.
 fn is_within_rounding(data: &Data<'_>, without: f64) -> bool {
-    without < data.expected_noise() && data.is_limited_by_rounding()
+    data.is_limited_by_rounding() && without < data.most_noise()
 }
 
 /// Whether `less` leaves notably more in the free motion before the surface of `more` than that does, over what is stated: there the encoder's rounding

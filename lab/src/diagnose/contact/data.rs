@@ -1,5 +1,7 @@
 //! The trials that a contact's law is held against: residuals, what each row is worth, and derivatives.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::criteria::ROUNDING_LIMITS;
@@ -19,6 +21,9 @@ pub struct Data<'a> {
     /// Power of the sensors' noise over what their figures say: one, or by what the law leaves that the rows were weighed by.
     pub noise_factor: f64,
 }
+
+/// 95 % point of the normal distribution.
+const NORMAL_95: f64 = 1.645;
 
 /// Step of a finite difference, in sizes of the value.
 const DIFFERENCE: f64 = 1e-4;
@@ -60,6 +65,23 @@ impl<'a> Data<'a> {
         let rows = self.weights.iter().flatten().zip(self.noise.iter().flatten()).filter(|(weight, _)| **weight > 0.0);
         let (sum, count) = rows.fold((0.0, 0usize), |(sum, count), (_, variance)| (sum + variance, count + 1));
         (sum / count.max(1) as f64).sqrt()
+    }
+
+    /// What the sensors alone leave at most, N or N m in root mean square: once in twenty times more. Within one step of the encoder a tool that rests has one error,
+    /// even over the step, whose square scatters about a twelfth of the step's by the root of 4/5 of that. Of a power that steps make up by
+    /// parts `w` that is `sqrt(4/5 sum w^2)`: many of them leave what is expected, and few can leave more.
+    #[must_use]
+    pub fn most_noise(&self) -> f64 {
+        let mut of_steps: BTreeMap<i64, f64> = BTreeMap::new();
+        for ((trial, noise), weights) in self.trials.iter().zip(&self.noise).zip(&self.weights) {
+            let rows = trial.encoder_steps.iter().zip(noise).zip(weights).filter(|(_, weight)| **weight > 0.0);
+            for ((step, variance), _) in rows {
+                *of_steps.entry(*step).or_default() += (variance - trial.force_variance).max(0.0);
+            }
+        }
+        let squares: f64 = of_steps.values().map(|power| power * power).sum();
+        let beyond = NORMAL_95 * (0.8 * squares).sqrt() / self.rows().max(1) as f64;
+        self.expected_noise().hypot(beyond.sqrt())
     }
 
     /// Whether the errors of the position are worth more force in the contact than the force sensor's noise is: by the sensors' figures where
@@ -141,5 +163,29 @@ impl<'a> Data<'a> {
             next - trial.len()
         });
         starts.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{FORCE_NOISE, TestContact};
+    use super::*;
+
+    /// A tool that rests in one step of its encoder, or as long in each of ten, whose rounding is worth ten times the force sensor's noise. By hand:
+    /// the power is known to 1.645 sqrt(4/5), of ten steps to that over the root of ten.
+    #[test]
+    fn the_rounding_of_few_steps_of_an_encoder_can_leave_more_than_is_expected() {
+        let mut trials = [TestContact::PLAIN.trial(1)];
+        let rows = trials[0].len() / 10 * 10;
+        let beyond = |trials: &[ContactTrial]| -> f64 {
+            let noise = vec![vec![101.0 * FORCE_NOISE.powi(2); rows]];
+            let data = Data { noise, weights: vec![vec![1.0; rows]], ..Data::new(trials) };
+            (data.most_noise().powi(2) - data.expected_noise().powi(2)) / (10.0 * FORCE_NOISE).powi(2)
+        };
+        assert!(beyond(&trials).abs() < 1e-12);
+        trials[0].encoder_steps = vec![7; rows];
+        assert!((beyond(&trials) - 1.645 * 0.8f64.sqrt()).abs() < 1e-3, "{}", beyond(&trials));
+        trials[0].encoder_steps = (0..rows).map(|row| row as i64 % 10).collect();
+        assert!((beyond(&trials) - 1.645 * 0.08f64.sqrt()).abs() < 1e-3, "{}", beyond(&trials));
     }
 }

@@ -38,9 +38,10 @@ pub(super) fn acts_at_a_distance(search: &Search<'_>, fit: &Fit, named: &[NamedT
 pub(super) fn is_notable(search: &Search<'_>, fit: &Fit, rest: &Rest) -> bool {
     let data = &search.data;
     let left = fit.energy - data.expected();
+    let least = if data.is_limited_by_rounding() { data.most_noise() } else { data.expected_noise() };
     rest.over_sensors > NOTABLE_POWER
         && search.part_of_force(left) > UNKNOWN_PART_OF_FORCE.value().max(LEAST_PART_OF_FORCE.value())
-        && rms(data, &data.residuals(&fit.model, &fit.values)) > data.expected_noise()
+        && rms(data, &data.residuals(&fit.model, &fit.values)) > least
 }
 
 pub(super) fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given: f64, held: [&HeldOut; 2]) -> Verdict {
