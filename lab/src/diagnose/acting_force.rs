@@ -74,8 +74,10 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
 /// `trial` without the effort in its force.
 fn without_effort(trial: &Recording, crosstalk: Crosstalk) -> Recording {
     let mut trial = trial.clone();
-    let added = crosstalk.added(trial.effort.as_deref().unwrap_or_default(), trial.period());
-    trial.force.iter_mut().flatten().zip(added).for_each(|(force, added)| *force -= added);
+    let step_s = trial.period();
+    if let (Some(force), Some(effort)) = (&mut trial.force, &trial.effort) {
+        crosstalk.take_off(force, effort, step_s);
+    }
     trial
 }
 

@@ -69,6 +69,9 @@ thresholds! { "contact";
     LEAST_CYCLES = 1.8, "1", chosen;
     /// Shortest time of a memory or a lag, rows: what is quicker lies between two of them.
     LEAST_TIME_ROWS = 2.0, "rows", derived;
+    /// Longest memory of the steps of an effort that couples into the force's reading: an amplifier forgets within milliseconds, and what remembers for
+    /// longer is the body that is touched.
+    LONGEST_COUPLING = 0.02, "s", chosen;
     /// Part of what passes with a time constant that has to pass within the longest recording: with less it is a constant to all that was seen.
     LEAST_PART_PASSED = 0.1, "1", derived;
     /// Part of the force's range from which a spring's force is said to fall on the way in.

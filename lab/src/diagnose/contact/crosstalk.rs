@@ -1,6 +1,6 @@
 //! The recorded effort in the force's reading: no effect of a contact, and one that names for a contact can be fitted to.
 
-use super::criteria::LEAST_GAIN;
+use super::criteria::{LEAST_GAIN, LONGEST_COUPLING};
 use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::rest::Rest;
@@ -18,10 +18,6 @@ pub struct Crosstalk {
     /// Time constant, s; infinite: of the effort itself.
     pub memory_s: f64,
 }
-
-/// Longest memory of steps that is looked for, s, beside an infinite one: an amplifier forgets within milliseconds, and what remembers for longer is
-/// the body that is touched.
-const LONGEST_MEMORY_S: f64 = 0.02;
 
 /// To what share the part is fitted: a hundredth of it leaves a ten thousandth of its squares.
 const PRECISION: f64 = 0.01;
@@ -60,7 +56,7 @@ pub(super) fn crosstalk(search: &Search<'_>, fit: &Fit) -> Option<Crosstalk> {
 /// The memories that are looked for, where rows are `step_s` apart.
 fn memories(step_s: f64) -> impl Iterator<Item = f64> {
     let doubled = std::iter::successors(Some(step_s), |memory| Some(2.0 * memory));
-    doubled.take_while(|memory| *memory <= LONGEST_MEMORY_S).chain([f64::INFINITY])
+    doubled.take_while(|memory| *memory <= LONGEST_COUPLING).chain([f64::INFINITY])
 }
 
 /// Derivatives of the weighted residual `base` of `nominal` by its values.
@@ -90,9 +86,13 @@ fn least_squares(others: &[Vec<f64>], effort: Vec<f64>, residual: &[f64]) -> Opt
 }
 
 impl Crosstalk {
+    /// Takes off `force`, rows `step_s` apart, what `effort` adds to it.
+    pub fn take_off(&self, force: &mut [f64], effort: &[f64], step_s: f64) {
+        force.iter_mut().zip(self.added(effort, step_s)).for_each(|(force, added)| *force -= added);
+    }
+
     /// What it adds to the force where `effort` is recorded, rows `step_s` apart, N or N m.
-    #[must_use]
-    pub fn added(&self, effort: &[f64], step_s: f64) -> Vec<f64> {
+    fn added(&self, effort: &[f64], step_s: f64) -> Vec<f64> {
         if self.memory_s.is_infinite() {
             return effort.iter().map(|effort| self.part * effort).collect();
         }
@@ -111,8 +111,7 @@ impl Crosstalk {
 /// `trial` without the effort in its force.
 fn without_effort(trial: &ContactTrial, crosstalk: Crosstalk) -> ContactTrial {
     let mut trial = trial.clone();
-    let added = crosstalk.added(trial.effort.as_deref().unwrap_or_default(), trial.step_s);
-    trial.force.iter_mut().zip(added).for_each(|(force, added)| *force -= added);
+    crosstalk.take_off(&mut trial.force, trial.effort.as_deref().unwrap_or_default(), trial.step_s);
     trial
 }
 
