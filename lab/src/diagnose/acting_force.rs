@@ -63,7 +63,9 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
         let mut added: Vec<f64> = shown.iter().zip(acted).map(|(shown, acted)| shown - acted).collect();
         if wanders {
             let left: Vec<f64> = looked_at.force.iter().zip(&shown).map(|(force, shown)| force - shown).collect();
-            let level = level(&looked_at.time, &left, &contact.noise[number]);
+            // Noise that remembers is the level itself.
+            let noise: Vec<f64> = contact.noise[number].iter().map(|all| all / contact.noise_memory).collect();
+            let level = level(&looked_at.time, &left, &noise);
             added.iter_mut().zip(level).for_each(|(added, level)| *added += level);
         }
         take_off(force, &trial.time, &added, looked_at);

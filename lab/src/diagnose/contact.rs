@@ -44,5 +44,6 @@ pub mod testing;
 pub mod tones;
 pub mod trial;
 pub mod variance;
+mod wandering_zero;
 mod weights;
 pub mod worth;

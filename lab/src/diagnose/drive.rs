@@ -53,6 +53,7 @@ pub mod nominal;
 pub mod one_body_filter;
 pub mod outcome;
 pub mod outside_force;
+mod outside_tone;
 pub mod prepare;
 pub mod presliding;
 pub mod pruning;

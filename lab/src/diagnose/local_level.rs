@@ -5,6 +5,8 @@
 //! smoother of H. E. Rauch, F. Tung and C. T. Striebel (1965).
 
 use super::golden_section::least_between;
+use super::linalg::energy;
+use super::median::median;
 
 /// Precision of the logarithm of the density.
 const LN_PRECISION: f64 = 0.1;
@@ -14,78 +16,122 @@ const LN_PRECISION: f64 = 0.1;
 /// Zero everywhere where no row is one.
 #[must_use]
 pub fn level(time: &[f64], values: &[f64], variance: &[f64]) -> Vec<f64> {
-    let rows = Rows { time, values, variance };
-    let Some(usual) = rows.usual_variance() else { return vec![0.0; values.len()] };
-    let duration = time[time.len() - 1] - time[0];
-    // From a level that stays within a thousandth of a row's deviation to one that is new in each row.
-    let [low, high] = [1e-6 * usual / duration, usual * time.len() as f64 / duration].map(f64::ln);
-    let most_likely = least_between([low, high], LN_PRECISION, |ln_density| -rows.log_likelihood(ln_density.exp()));
-    rows.smoothed(most_likely.exp())
+    LocalLevel::fitted(time, values, variance).map_or_else(|| vec![0.0; values.len()], |level| level.smoothed(values))
 }
 
-struct Rows<'a> {
-    time: &'a [f64],
-    values: &'a [f64],
-    variance: &'a [f64],
+/// A level of the most likely density, for rows at these instants.
+pub struct LocalLevel {
+    steps: Vec<Step>,
+    /// Log likelihood of the rows that it was fitted to, nats.
+    pub log_likelihood: f64,
+    /// How much more that is than of a level that stays.
+    pub gain: f64,
 }
 
-/// Mean and variance of the level before a row and behind it.
+/// How well the level is known about a row, and the row's own variance.
 struct Step {
-    before: [f64; 2],
-    behind: [f64; 2],
+    /// Variance of the level before the row.
+    before: f64,
+    /// And behind it.
+    behind: f64,
+    /// That of the row.
+    row: f64,
 }
 
-impl Rows<'_> {
-    /// Median of the variances of rows that are measurements, where time goes on.
-    fn usual_variance(&self) -> Option<f64> {
-        let mut known: Vec<f64> = self.variance.iter().copied().filter(|variance| variance.is_finite()).collect();
-        let goes_on = self.time.last() > self.time.first();
-        known.sort_by(f64::total_cmp);
-        known.get(known.len() / 2).copied().filter(|variance| *variance > 0.0 && goes_on)
+impl Step {
+    /// Whether the row is a measurement.
+    const fn measures(&self) -> bool {
+        self.row.is_finite()
     }
 
-    fn filtered(&self, density: f64) -> Vec<Step> {
-        let mut now = [0.0, f64::INFINITY];
-        let steps = (0..self.values.len()).map(|row| {
-            let passed = if row == 0 { 0.0 } else { self.time[row] - self.time[row - 1] };
-            let before = [now[0], now[1] + density * passed];
-            now = match (before[1].is_finite(), self.variance[row].is_finite()) {
-                (_, false) => before,
-                // The first row says where the level begins.
-                (false, true) => [self.values[row], self.variance[row]],
-                (true, true) => {
-                    let gain = before[1] / (before[1] + self.variance[row]);
-                    [before[0] + gain * (self.values[row] - before[0]), (1.0 - gain) * before[1]]
-                }
-            };
-            Step { before, behind: now }
+    /// Whether the level was known before it.
+    const fn is_known(&self) -> bool {
+        self.before.is_finite()
+    }
+}
+
+impl LocalLevel {
+    /// That behind `values` at the instants `time`, s, of these variances; `None` where no row is a measurement.
+    #[must_use]
+    pub fn fitted(time: &[f64], values: &[f64], variance: &[f64]) -> Option<Self> {
+        let usual = usual_variance(variance).filter(|usual| *usual > 0.0 && time.last() > time.first())?;
+        let duration = time[time.len() - 1] - time[0];
+        let of = |density: f64| Self { steps: steps(time, variance, density), log_likelihood: 0.0, gain: 0.0 };
+        // From a level that stays within a thousandth of a row's deviation to one that is new in each row.
+        let [low, high] = [1e-6 * usual / duration, usual * time.len() as f64 / duration].map(f64::ln);
+        let most_likely =
+            least_between([low, high], LN_PRECISION, |ln_density| -of(ln_density.exp()).log_likelihood_of(values));
+        let mut level = of(most_likely.exp());
+        level.log_likelihood = level.log_likelihood_of(values);
+        level.gain = level.log_likelihood - of(0.0).log_likelihood_of(values);
+        Some(level)
+    }
+
+    /// The level before each row and behind it.
+    fn filtered(&self, values: &[f64]) -> Vec<[f64; 2]> {
+        let mut now = 0.0;
+        let rows = self.steps.iter().zip(values).map(|(step, value)| {
+            let before = now;
+            // The first row says where the level begins.
+            let gain = if step.is_known() { step.before / (step.before + step.row) } else { 1.0 };
+            if step.measures() {
+                now += gain * (value - now);
+            }
+            [before, now]
         });
-        steps.collect()
+        rows.collect()
     }
 
-    fn log_likelihood(&self, density: f64) -> f64 {
-        let steps = self.filtered(density);
-        let rows = steps.iter().zip(self.values).zip(self.variance);
-        rows.filter(|((step, _), variance)| step.before[1].is_finite() && variance.is_finite())
-            .map(|((step, value), variance)| {
-                let spread = step.before[1] + variance;
-                -0.5 * (spread.ln() + (value - step.before[0]).powi(2) / spread)
-            })
-            .sum()
+    /// What each row tells that the rows before it did not, in deviations: of rows that share the level's errors, rows that share none (T. Kailath,
+    /// *IEEE Trans. Autom. Control* 13, 1968). Zero where it tells nothing of that kind.
+    #[must_use]
+    pub fn innovations(&self, values: &[f64]) -> Vec<f64> {
+        let rows = self.filtered(values).into_iter().zip(&self.steps).zip(values);
+        let told = |(([before, _], step), value): (([f64; 2], &Step), &f64)| {
+            if step.is_known() && step.measures() { (value - before) / (step.before + step.row).sqrt() } else { 0.0 }
+        };
+        rows.map(told).collect()
     }
 
-    fn smoothed(&self, density: f64) -> Vec<f64> {
-        let steps = self.filtered(density);
-        let mut levels: Vec<f64> = steps.iter().map(|step| step.behind[0]).collect();
+    fn log_likelihood_of(&self, values: &[f64]) -> f64 {
+        let told = self.steps.iter().filter(|step| step.is_known() && step.measures());
+        let spread: f64 = told.map(|step| (step.before + step.row).ln()).sum();
+        -0.5 * (spread + energy(&self.innovations(values)))
+    }
+
+    fn smoothed(&self, values: &[f64]) -> Vec<f64> {
+        let filtered = self.filtered(values);
+        let mut levels: Vec<f64> = filtered.iter().map(|[_, behind]| *behind).collect();
         for row in (0..levels.len().saturating_sub(1)).rev() {
-            let (now, next) = (&steps[row], &steps[row + 1]);
+            let (now, next) = (&self.steps[row], &self.steps[row + 1]);
             // Before the first measurement the level is what it is there.
-            let gain = if now.behind[1].is_finite() { now.behind[1] / next.before[1] } else { 1.0 };
-            let ahead = if next.before[1].is_finite() { next.before[0] } else { levels[row] };
+            let gain = if now.behind.is_finite() { now.behind / next.before } else { 1.0 };
+            let ahead = if next.is_known() { filtered[row + 1][0] } else { levels[row] };
             levels[row] += gain * (levels[row + 1] - ahead);
         }
         levels
     }
+}
+
+/// Median of the variances of rows that are measurements.
+fn usual_variance(variance: &[f64]) -> Option<f64> {
+    median(variance.iter().copied().filter(|variance| variance.is_finite()))
+}
+
+/// How well a level of `density` is known along the rows.
+fn steps(time: &[f64], variance: &[f64], density: f64) -> Vec<Step> {
+    let mut now = f64::INFINITY;
+    let rows = variance.iter().enumerate().map(|(row, of_row)| {
+        let passed = if row == 0 { 0.0 } else { time[row] - time[row - 1] };
+        let before = now + density * passed;
+        now = match (before.is_finite(), of_row.is_finite()) {
+            (_, false) => before,
+            (false, true) => *of_row,
+            (true, true) => before * of_row / (before + of_row),
+        };
+        Step { before, behind: now, row: *of_row }
+    });
+    rows.collect()
 }
 
 #[cfg(test)]

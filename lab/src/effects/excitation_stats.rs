@@ -13,6 +13,8 @@ pub struct ExcitationStats {
     pub force: f64,
     /// Greatest pull that was measured, in size; zero where there is none.
     pub pull: f64,
+    /// Greatest height above the surface at which half of that pull was measured or more.
+    pub half_pull_height: f64,
     /// Greatest effort in size; zero where none is recorded.
     pub effort: f64,
     /// Least and greatest position.
@@ -72,6 +74,13 @@ impl ExcitationStats {
     #[must_use]
     pub fn greatest_pull<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
         forces.fold(0.0, |most, force| most.max(-force))
+    }
+
+    /// Greatest height, m or rad, in `rows` of force and height above the surface at which the force pulls by half of `pull` or more; zero where none does.
+    #[must_use]
+    pub fn half_pull_height(pull: f64, rows: impl Iterator<Item = (f64, f64)>) -> f64 {
+        let pulled = rows.filter(|(force, _)| pull > 0.0 && *force <= -0.5 * pull);
+        pulled.map(|(_, height)| height).fold(0.0, f64::max)
     }
 
     /// Whether the effect of time can be separated from that of depth: only where the same depth was visited again.

@@ -169,12 +169,16 @@ fn excitation_stats(rig: &Rig, trials: &[Recording]) -> ExcitationStats {
     }
     let speed = (squares / count.max(1.0)).sqrt().max((high - low) / duration.max(sample));
     let contact = rig.contact;
+    let pull = ExcitationStats::greatest_pull(trials.iter().filter_map(|trial| trial.force.as_ref()).flatten());
+    let rows = trials.iter().filter_map(|trial| Some(trial.force.as_ref()?.iter().zip(&trial.position)));
+    let heights = rows.flatten().map(|(force, position)| (*force, surface - position));
     ExcitationStats {
         depth: if contact.is_some() { (high - surface).max(1e-3 * (high - low)) } else { 0.0 },
         speed,
         acceleration: speed * std::f64::consts::TAU,
         force: peak(|trial| trial.force.as_ref()),
-        pull: ExcitationStats::greatest_pull(trials.iter().filter_map(|trial| trial.force.as_ref()).flatten()),
+        pull,
+        half_pull_height: ExcitationStats::half_pull_height(pull, heights),
         effort: peak(|trial| trial.effort.as_ref()),
         travel: (low, high),
         duration,

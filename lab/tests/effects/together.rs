@@ -13,6 +13,7 @@ pub fn scene() -> ExcitationStats {
         acceleration: 2.0,
         force: 3.0,
         pull: 0.0,
+        half_pull_height: 0.0,
         effort: 7.0,
         travel: (-10e-3, 9e-3),
         duration: 4.0,

@@ -1,7 +1,8 @@
 //! Which of the effects that were found rows confirm that no fit saw, and the recordings tell from none.
 
 use super::criteria::{
-    COMPARISONS, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_TOLD_SHARE, NOISE_POWER_KNOWN_TO, NOTABLE_POWER,
+    COMPARISONS, LEAST_GAIN, LEAST_HELD_OUT_SHARE, LEAST_LINE_POWER, LEAST_TOLD_SHARE, NOISE_POWER_KNOWN_TO,
+    NOTABLE_POWER,
 };
 use super::data::Data;
 use super::fit::Fit;
@@ -12,6 +13,7 @@ use super::lines::line_beyond;
 use super::model::index;
 use super::rest::Rest;
 use super::search::Search;
+use super::wandering_zero::gain_beside_a_wandering_zero;
 use crate::diagnose::evidence::{NamedTerm, share_beyond_noise};
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::effects::ExcitationStats;
@@ -56,6 +58,10 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
             fit = without[at - first].0.clone();
             continue;
         }
+        if let Some(nth) = followed(data, &fit, &without) {
+            fit = without[nth].0.clone();
+            continue;
+        }
         let named = without.iter().enumerate().map(|(nth, (less, left, without))| NamedTerm {
             at: first + nth,
             held_out_share: share(*left).clamp(0.0, 1.0),
@@ -67,6 +73,17 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
         let named = named.collect();
         return (fit, held, named);
     }
+}
+
+/// The effect that gains least over `without` it, beside a zero that wanders, where that is less than any is told for: what follows such a zero
+/// alone gains nothing where rows are taken with the errors that they share.
+fn followed(data: &Data<'_>, fit: &Fit, without: &[(Fit, f64, f64)]) -> Option<usize> {
+    let gains = without.iter().enumerate().filter_map(|(nth, (less, ..))| {
+        let gain = gain_beside_a_wandering_zero(data, fit, less)?;
+        Some((nth, gain))
+    });
+    let (nth, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (gain < LEAST_GAIN.value()).then_some(nth)
 }
 
 /// The first of the `terms` of `fit` with one size, of either sign, whose 95 % interval holds zero: beside the others the recordings do not

@@ -46,6 +46,12 @@ impl<'a> Data<'a> {
         Data { trials, noise: self.noise.clone(), weights: self.weights.clone(), noise_factor: self.noise_factor }
     }
 
+    /// Power of the sensors' noise over that of their noise from row to row, at least one: more where it remembers.
+    #[must_use]
+    pub const fn noise_memory(&self) -> f64 {
+        self.noise_factor.max(1.0)
+    }
+
     /// Rows that count.
     #[must_use]
     pub fn rows(&self) -> usize {
@@ -89,7 +95,7 @@ impl<'a> Data<'a> {
     #[must_use]
     pub fn is_limited_by_rounding(&self) -> bool {
         let force_noise = self.trials.iter().map(|trial| trial.force_variance.sqrt()).fold(0.0, f64::max);
-        self.expected_noise() > ROUNDING_LIMITS * self.noise_factor.max(1.0).sqrt() * force_noise
+        self.expected_noise() > ROUNDING_LIMITS * self.noise_memory().sqrt() * force_noise
     }
 
     /// Measured less predicted force of trial `trial`, N or N m.

@@ -64,7 +64,7 @@ impl Data<'_> {
             let ranges = model.ranges(&values);
             let free: Vec<usize> = (0..values.len()).filter(|at| ranges[*at].free && !held(*at)).collect();
             let normal =
-                Normal::of(self.columns(model, &values, &ranges, &free, &base), &base, &ranges, &free, &values);
+                Normal::of(&self.columns(model, &values, &ranges, &free, &base), &base, &ranges, &free, &values);
             let mut gained = 0.0;
             for _ in 0..DAMPING_TRIES {
                 let moved = normal.step(&values, &ranges, &free, damping);
@@ -108,15 +108,16 @@ fn prior_energy(ranges: &[Range], values: &[f64]) -> f64 {
 }
 
 /// Normal equations of a linearised fit.
-struct Normal {
+pub(super) struct Normal {
     matrix: DMatrix<f64>,
     right: DVector<f64>,
 }
 
 impl Normal {
-    fn of(columns: Vec<Vec<f64>>, residual: &[f64], ranges: &[Range], free: &[usize], values: &[f64]) -> Self {
+    /// Those of `residual` with its derivatives `columns` by one step of each value in `free`.
+    pub(super) fn of(columns: &[Vec<f64>], residual: &[f64], ranges: &[Range], free: &[usize], values: &[f64]) -> Self {
         let count = columns.len();
-        let mut matrix = gram(&columns);
+        let mut matrix = gram(columns);
         let mut right = DVector::from_fn(count, |row, _| -dot(&columns[row], residual));
         for (row, &at) in free.iter().enumerate() {
             if let Some((mean, deviation)) = ranges[at].prior {
@@ -129,7 +130,7 @@ impl Normal {
     }
 
     /// `values` after a damped step; a value at an end of its range that would leave it is held.
-    fn step(&self, values: &[f64], ranges: &[Range], free: &[usize], damping: f64) -> Vec<f64> {
+    pub(super) fn step(&self, values: &[f64], ranges: &[Range], free: &[usize], damping: f64) -> Vec<f64> {
         let mut held = vec![false; free.len()];
         for _ in 0..=free.len() {
             let open: Vec<usize> = (0..free.len()).filter(|nth| !held[*nth]).collect();

@@ -4,8 +4,9 @@ use super::change_point::jumps;
 use super::data::Data;
 use super::fit::Fit;
 use super::model::index;
+use super::range::Range;
 use super::rest::Rest;
-use crate::diagnose::interval::{Clusters, Intervals, spread};
+use crate::diagnose::interval::{Clusters, Intervals, Spread, spread};
 use crate::diagnose::jackknife::stretch_of_rows;
 use crate::diagnose::linalg::energy;
 
@@ -19,15 +20,21 @@ const HALVINGS: usize = 30;
 /// The interval of each value of `fit`.
 #[must_use]
 pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
-    let ranges = fit.model.ranges(&fit.values);
-    let jumps = jumps(fit);
+    let (ranges, jumps) = (fit.model.ranges(&fit.values), jumps(fit));
     let free: Vec<usize> = (0..fit.values.len()).filter(|at| ranges[*at].free && !jumps.contains(at)).collect();
-    let columns = data.columns(&fit.model, &fit.values, &ranges, &free, &rest.rows);
-    let priors: Vec<f64> =
-        free.iter().map(|at| ranges[*at].prior.map_or(0.0, |(_, sigma)| (ranges[*at].size / sigma).powi(2))).collect();
-    let counts: Vec<Vec<bool>> =
-        data.weights.iter().map(|trial| trial.iter().map(|weight| *weight > 0.0).collect()).collect();
-    let stretch = stretch_of_rows(&counts);
+    let mut all = intervals_of(data, fit, rest, &free);
+    for at in jumps {
+        all.ends[at] = [ranges[at].low, ranges[at].high].map(|bound| end_of_jump(data, fit, rest, at, bound));
+    }
+    all
+}
+
+/// The intervals of the values in `free`, all others being known.
+pub(super) fn intervals_of(data: &Data<'_>, fit: &Fit, rest: &Rest, free: &[usize]) -> Intervals {
+    let ranges = fit.model.ranges(&fit.values);
+    let columns = data.columns(&fit.model, &fit.values, &ranges, free, &rest.rows);
+    let priors = priors(&ranges, free);
+    let stretch = stretches(data);
     // Rounding is a function of the place, the same in whatever trial and however long after.
     let is_stepped = data.trials.iter().all(|trial| trial.encoder_steps.len() == trial.len());
     let place: Vec<i64> =
@@ -35,10 +42,27 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
     let rounding = if place.is_empty() { Vec::new() } else { rounding(data, fit) };
     let rows = Clusters { stretch: &stretch, place: &place, rounding: &rounding };
     let found = spread(&rest.rows, &columns, &priors, rest.power, rows);
-    let mut all: Vec<[f64; 2]> = fit.values.iter().map(|value| [*value; 2]).collect();
+    in_values(fit, &ranges, free, &found)
+}
+
+/// One over the variance that each value in `free` is expected to have beforehand, in squared steps; zero where nothing is expected.
+pub(super) fn priors(ranges: &[Range], free: &[usize]) -> Vec<f64> {
+    free.iter().map(|at| ranges[*at].prior.map_or(0.0, |(_, sigma)| (ranges[*at].size / sigma).powi(2))).collect()
+}
+
+/// The stretch of the recordings that each row is in.
+pub(super) fn stretches(data: &Data<'_>) -> Vec<usize> {
+    let counts: Vec<Vec<bool>> =
+        data.weights.iter().map(|trial| trial.iter().map(|weight| *weight > 0.0).collect()).collect();
+    stretch_of_rows(&counts)
+}
+
+/// What was `found` of the values in `free`, in their own units; a value that was not fitted is what it is.
+pub(super) fn in_values(fit: &Fit, ranges: &[Range], free: &[usize], found: &Spread) -> Intervals {
+    let mut ends: Vec<[f64; 2]> = fit.values.iter().map(|value| [*value; 2]).collect();
     let slope = |at: &usize| if ranges[*at].by_factors { fit.values[*at] } else { ranges[*at].size };
-    let covariance = found.covariance_of(fit.values.len(), &free, &free.iter().map(slope).collect::<Vec<_>>());
-    for (&at, steps) in free.iter().zip(found.half_widths) {
+    let covariance = found.covariance_of(fit.values.len(), free, &free.iter().map(slope).collect::<Vec<_>>());
+    for (&at, steps) in free.iter().zip(&found.half_widths) {
         let (range, value) = (&ranges[at], fit.values[at]);
         let [low, high] = if range.by_factors {
             let factor = steps.min(50.0).exp();
@@ -47,12 +71,9 @@ pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
             let half = range.size * steps;
             [value - half, value + half]
         };
-        all[at] = [low.max(range.low), high.min(range.high)];
+        ends[at] = [low.max(range.low), high.min(range.high)];
     }
-    for at in jumps {
-        all[at] = [ranges[at].low, ranges[at].high].map(|bound| end_of_jump(data, fit, rest, at, bound));
-    }
-    Intervals { ends: all, covariance }
+    Intervals { ends, covariance }
 }
 
 /// By how much one deviation of the position, as it is known, changes each row of the weighted residual of `fit`: by a surface that lies

@@ -16,6 +16,7 @@ use super::rest::Rest;
 use super::search::Search;
 use super::selection::Chosen;
 use super::trial::ContactTrial;
+use super::wandering_zero::{beside_a_wandering_zero, wanders};
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::verdict::Verdict;
 use crate::recording::Recording;
@@ -29,6 +30,8 @@ pub struct Outcome {
     pub noise: Vec<Vec<f64>>,
     /// What each row is worth: one over its expected deviation.
     pub weights: Vec<Vec<f64>>,
+    /// Power of the sensors' noise over that of their noise from row to row, at least one: more where it remembers.
+    pub noise_memory: f64,
     /// How it stands.
     pub verdict: Verdict,
     /// The refitted nominal law.
@@ -100,7 +103,8 @@ pub fn identify(
     let chosen = search.run(say);
     say("the contact: what is left");
     // Beside an effect the tool's free motion may hold what that effect does not say, as interference under an atomic force microscope.
-    if chosen.fit.model == search.nominal.model {
+    // What is left beside a zero that wanders is that zero's, where free motion holds as much of it.
+    if chosen.fit.model == search.nominal.model || wanders(&chosen.fit) {
         search.data = search.data.heard_in_free_motion(&chosen.fit);
     }
     let mut outcome = judged(&search, chosen, &start);
@@ -128,11 +132,18 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let verdict = verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]);
     // Beside names that stand for the mismatch, too: what a textbook's law leaves of a real thing is no less of use for being told.
     let learned = if is_notable(search, &fit, &rest) { learned(data, &fit) } else { None };
-    let spread = intervals(data, &fit, &rest);
+    let mut spread = intervals(data, &fit, &rest);
+    let alternatives = alternatives(search, &folds, &fit, &chosen, &refitted);
+    if verdict == Verdict::Explained {
+        if let Some(told) = beside_a_wandering_zero(data, &fit) {
+            (fit, spread) = told;
+        }
+    }
     Outcome {
         trials: Vec::new(),
         noise: Vec::new(),
         weights: Vec::new(),
+        noise_memory: data.noise_memory(),
         verdict,
         crosstalk,
         learned,
@@ -140,7 +151,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         known_terms: search.nominal.model.terms.len(),
         intervals: spread.ends,
         covariance: spread.covariance,
-        alternatives: alternatives(search, &folds, &fit, &chosen, &refitted),
+        alternatives,
         named,
         residuals: [given_residual, refitted.residual, improved.residual],
         expected_noise: data.expected_noise(),

@@ -95,12 +95,16 @@ impl Scales {
         let squares = trials.iter().flat_map(|trial| &trial.acceleration).map(|value| value * value).sum::<f64>();
         let rows: usize = trials.iter().map(ContactTrial::len).sum();
         let force = trials.iter().flat_map(|trial| &trial.force).fold(0.0f64, |most, force| most.max(force.abs()));
+        let pull = ExcitationStats::greatest_pull(trials.iter().flat_map(|trial| &trial.force));
+        let heights = trials.iter().flat_map(|trial| trial.position.iter().map(|position| surface - position));
+        let forces = trials.iter().flat_map(|trial| trial.force.iter().copied());
         ExcitationStats {
             depth: self.depth,
             speed: self.speed,
             acceleration: (squares / rows.max(1) as f64).sqrt(),
             force,
-            pull: ExcitationStats::greatest_pull(trials.iter().flat_map(|trial| &trial.force)),
+            pull,
+            half_pull_height: ExcitationStats::half_pull_height(pull, forces.zip(heights)),
             effort: 0.0,
             travel: (self.positions[0], self.positions[1]),
             duration: self.duration_s,

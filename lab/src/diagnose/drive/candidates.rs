@@ -175,8 +175,14 @@ pub fn idle_friction(fit: &Fit) -> Option<usize> {
 /// Whether the likelihood alone speaks for `more` and the values that it has beside those of `less`.
 #[must_use]
 pub fn is_likelier(more: &Fit, less: &Fit) -> bool {
-    let values = more.values.len().saturating_sub(less.values.len()).max(1);
-    more.log_likelihood - less.log_likelihood > LEAST_GAIN + (LEAST_GAIN_PER_VALUE * values as f64).value()
+    let values = more.values.len().saturating_sub(less.values.len());
+    pays_for(values, more.log_likelihood - less.log_likelihood)
+}
+
+/// Whether a gain of log likelihood, nats, is worth as many more values.
+#[must_use]
+pub fn pays_for(values: usize, gain: f64) -> bool {
+    gain > LEAST_GAIN + (LEAST_GAIN_PER_VALUE * values.max(1) as f64).value()
 }
 
 /// ln of the factor by which a fitted inertia may differ from the rig file's before the search starts from the latter, too.

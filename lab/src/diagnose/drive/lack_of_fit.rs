@@ -55,7 +55,7 @@ fn by(search: &Search<'_>, fit: &Fit, term: Term) -> Lessened {
 /// What a single tone in time, of no law of a motion, takes of the force `missing`, a column a trial.
 fn by_a_tone(missing: &[Vec<f64>]) -> Lessened {
     let left = rms(missing);
-    [left, (left * left - loudest_tone(missing)).max(0.0).sqrt()]
+    [left, (left * left - loudest_tone(missing).power).max(0.0).sqrt()]
 }
 
 /// Whether of `left` beyond `noise` half is gone in what is left `after`, all root mean squares: no term takes that noise. It is no more than what

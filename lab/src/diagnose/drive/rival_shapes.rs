@@ -14,25 +14,31 @@ use super::shapes::{courses, load_by_place, shaped};
 use super::term::Term;
 
 impl Search<'_> {
-    /// `fit` without a name in whose place a shape does far better, and that is not worth having beside it; `None` where all stand. Of a rigid drive:
-    /// what a link moves can look like any shape.
+    /// `fit` without a name in whose place a tone in time or a shape does far better, and that is not worth having beside it; `None` where all stand. Shapes
+    /// of a rigid drive alone: what a link moves can look like any.
     #[must_use]
     pub fn without_rivalled(&self, fit: &Fit) -> Option<Fit> {
-        if fit.model.has_link() || fit.model == self.nominal.model {
+        let own = self.nominal.model.terms.len();
+        let told = || (own..fit.model.terms.len()).filter(|at| fit.model.terms[*at].is_told());
+        let at =
+            told().find(|at| self.is_rivalled_by_a_tone(fit, *at)).or_else(|| self.rivalled_by_a_shape(fit, told()))?;
+        let (model, values) = fit.model.without(at, &fit.values);
+        Some(self.lessened(fit, model, values))
+    }
+
+    /// The first of the terms `told` of `fit`, of a rigid drive, in whose place a shape does far better.
+    fn rivalled_by_a_shape(&self, fit: &Fit, mut told: impl Iterator<Item = usize>) -> Option<usize> {
+        if fit.model.has_link() {
             return None;
         }
         let sampled = sample(&self.data, &self.disturbance(fit));
         let data = Data { trials: sampled.as_deref().unwrap_or(self.data.trials), ..self.data };
         let base = quickly_fitted(&data, fit);
-        let own = self.nominal.model.terms.len();
-        let mut told = (own..fit.model.terms.len()).filter(|at| fit.model.terms[*at].is_told());
         let is_rivalled = |at: &usize| {
             let mut promising = self.with_shapes(&data, fit, *at).filter(|rival| self.does_far_better(rival, &base));
             promising.any(|rival| self.is_rival(&rival, fit, *at))
         };
-        let at = told.find(is_rivalled)?;
-        let (model, values) = fit.model.without(at, &fit.values);
-        Some(self.lessened(fit, model, values))
+        told.find(is_rivalled)
     }
 
     /// `fit` with each shape of another kind in the place of term `at`, fitted quickly to `data`.

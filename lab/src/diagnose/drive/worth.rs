@@ -15,7 +15,9 @@ use crate::diagnose::model_comparison::{clarke, vuong};
 pub struct Worth {
     /// Share of the unexplained power that it takes.
     pub share: f64,
-    /// What it takes, in root mean square, over all that the nominal law leaves.
+    /// What it takes, N or N m in root mean square.
+    pub taken: f64,
+    /// The same over all that the nominal law leaves.
     pub part_of_all: f64,
     /// Whether the gain is there throughout: the larger of Vuong's and Clarke's statistic over blocks.
     pub throughout: f64,
@@ -48,6 +50,7 @@ impl Search<'_> {
         let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
         Worth {
             share: share_taken(power(less), power(more), 2.0 * self.effort_noise_density * self.band_hz),
+            taken: taken.sqrt(),
             part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),
             throughout: vuong(&rows[0], &rows[1], block).max(clarke(&rows[0], &rows[1], block)),
         }
@@ -63,6 +66,7 @@ impl Search<'_> {
         self.explains_rows(more, less)
             && is_likelier(more, less)
             && worth.is_of_size(is_free, is_of_interest)
+            && worth.taken > LEAST_PART_OF_EFFORT * self.scales.effort
             && worth.throughout > LEAST_THROUGHOUT
     }
 
@@ -91,12 +95,14 @@ pub fn share_taken(left: f64, held: f64, noise: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::term::Term;
+    use super::super::testing::{TestDrive, search_over};
     use super::*;
 
     #[test]
     fn a_term_of_whatever_shape_is_told_that_takes_most_of_the_rest() {
         let is_told = |share: f64, part_of_all: f64, is_free: bool, is_of_interest: bool| {
-            Worth { share, part_of_all, throughout: 10.0 }.is_of_size(is_free, is_of_interest)
+            Worth { share, taken: 1.0, part_of_all, throughout: 10.0 }.is_of_size(is_free, is_of_interest)
         };
         // The exponent of grease beside dry friction, and a cogging of a robot's axis.
         assert!(is_told(0.91, 0.185, true, true) && !is_told(0.64, 0.193, true, true));
@@ -105,6 +111,22 @@ mod tests {
         assert!(
             is_told(0.3, 0.15, false, false) && !is_told(0.3, 0.15, true, false) && !is_told(0.2, 0.9, false, true)
         );
+    }
+
+    /// Dry friction of 60 mN and of 3 mN: unexplained they are 9 mN and 0.8 mN over 20 Hz, 0.0044 and 0.0004 of an effort of 2 N.
+    #[test]
+    fn a_term_that_takes_next_to_nothing_of_the_effort_is_not_worth_telling() {
+        let is_told = |coulomb: f64| {
+            let drive = TestDrive { coulomb, encoder: 1e-8, ..TestDrive::PLAIN };
+            let trials = [drive.trial(6.0, 6), drive.trial(6.0, 7)];
+            let search = search_over(&trials, &drive);
+            let mut start = search.nominal.clone();
+            start.model.terms.push(Term::Coulomb);
+            start.values.push(coulomb);
+            let fit = search.polished(&start);
+            search.is_worth(&fit, &search.nominal)
+        };
+        assert!(is_told(0.06) && !is_told(0.003));
     }
 
     /// By hand, in squares of one unit.

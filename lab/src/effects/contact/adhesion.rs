@@ -98,6 +98,18 @@ mod form {
     pub const BOND: usize = 6;
 }
 
+/// The height at which a pull ends by `form`, of which half was measured last at a height above the surface, where it is greatest at `stretched`; `None`
+/// where it was not measured above that.
+fn seen_end(form: usize, scene: &ExcitationStats, stretched: f64) -> Option<f64> {
+    let half = scene.half_pull_height;
+    let end = match form {
+        form::COHESIVE => 2.0 * half - stretched,
+        form::BRIDGE | form::CAPILLARY => 2.0 * half,
+        _ => half,
+    };
+    (scene.pull > 0.0 && half > 0.0 && half > stretched).then_some(end)
+}
+
 impl Effect for Adhesion {
     fn spec(&self) -> &'static EffectSpec {
         &SPEC
@@ -134,12 +146,18 @@ impl Effect for Adhesion {
         // A small pull grows in proportion until the spring cannot pull as much: one that was measured is tried at its own size.
         let stretched = (scene.pull / scene.stiffness.max(f64::MIN_POSITIVE)).min(away);
         let measured = [0.5, 1.0, 2.0].iter().map(|times| times * stretched).filter(|height| *height > 0.0);
+        // Where the pull was seen to end: beyond the end by softening a release says nothing, and before it hides the rest.
+        let seen = seen_end(form, scene, stretched).into_iter();
         if form == form::COHESIVE {
             let small = heights.map(|height| Start::sized(&[force, height, 1.5 * height], &[0]));
-            return small.chain(measured.map(|height| Start::at(&[scene.pull, height, 1.5 * height]))).collect();
+            let measured = measured.map(|height| Start::at(&[scene.pull, height, 1.5 * height]));
+            return small
+                .chain(measured)
+                .chain(seen.map(|end| Start::at(&[scene.pull, end, end - stretched])))
+                .collect();
         }
         let small = heights.map(|height| Start::sized(&[force, height], &[0]));
-        small.chain(measured.map(|height| Start::at(&[scene.pull, height]))).collect()
+        small.chain(measured.chain(seen).map(|height| Start::at(&[scene.pull, height]))).collect()
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
@@ -364,6 +382,28 @@ mod tests {
         }
         let none = ExcitationStats { pull: 0.0, ..scene };
         assert!(Adhesion.starts(0, &none).iter().all(|start| !start.linear_parameters.is_empty()));
+    }
+
+    /// A tape that pulls by 1.6 N at 0.4 mm and softens to nothing at 1.5 mm: half of it is seen at 0.95 mm, and a bridge that ends at 1.5 mm has half at 0.75 mm.
+    #[test]
+    fn a_pull_is_tried_to_the_height_where_it_was_seen_to_end() {
+        let scene = |half_pull_height: f64| ExcitationStats {
+            depth: 1.2e-3,
+            force: 4.8,
+            pull: 1.6,
+            half_pull_height,
+            travel: (-3e-3, 1.2e-3),
+            stiffness: 4000.0,
+            releases: 3,
+            ..ExcitationStats::default()
+        };
+        let is_tried = |form: usize, half: f64, values: &[f64]| {
+            let is_it = |start: &Start| start.values.iter().zip(values).all(|(a, b)| (a / b - 1.0).abs() < 1e-9);
+            Adhesion.starts(form, &scene(half)).iter().any(is_it)
+        };
+        assert!(is_tried(form::COHESIVE, 0.95e-3, &[1.6, 1.5e-3, 1.1e-3]));
+        assert!(is_tried(form::BRIDGE, 0.75e-3, &[1.6, 1.5e-3]) && is_tried(form::BOND, 0.75e-3, &[1.6, 0.75e-3]));
+        assert!(Adhesion.starts(form::COHESIVE, &scene(0.0)).iter().all(|start| start.values[2] > start.values[1]));
     }
 
     #[test]
