@@ -134,10 +134,10 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let learned = if is_notable(search, &fit, &rest) { learned(data, &fit) } else { None };
     let mut spread = intervals(data, &fit, &rest);
     let alternatives = alternatives(search, &folds, &fit, &chosen, &refitted);
-    if verdict == Verdict::Explained {
-        if let Some(told) = beside_a_wandering_zero(data, &fit) {
-            (fit, spread) = told;
-        }
+    if verdict == Verdict::Explained
+        && let Some(told) = beside_a_wandering_zero(data, &fit)
+    {
+        (fit, spread) = told;
     }
     Outcome {
         trials: Vec::new(),
