@@ -1,5 +1,7 @@
 //! The contact's law with the effects added to it, and the layout of its values.
 
+use std::ops::Range;
+
 use super::scales::Scales;
 use crate::diagnose::term::Term;
 use crate::effects::{ExcitationStats, Limit};
@@ -119,6 +121,13 @@ impl ContactModel {
     #[must_use]
     pub fn zero(&self, values: &[f64], trial: usize) -> f64 {
         if self.own.zero { self.own_value(values, trial, 1) } else { 0.0 }
+    }
+
+    /// Places of the trials' own zeros.
+    pub fn own_zeros(&self) -> Range<usize> {
+        let others = self.trials - 1;
+        let first = index::SHARED + others;
+        if self.own.zero { first..first + others } else { first..first }
     }
 
     /// Factor of the contact's force in trial `trial`.

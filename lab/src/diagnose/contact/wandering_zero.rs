@@ -21,8 +21,12 @@ const ROUNDS: usize = 8;
 const NEGLIGIBLE_PART: f64 = 1e-6;
 
 /// `fit` with the values of generalised least squares, the zero's own values beside these, and the intervals of all. `None` where no wandering zero is
-/// told, or where the rows do not pay for a level in each trial (G. Schwarz, *Ann. Statist.* 6, 1978).
+/// told, where the rows do not pay for a level in each trial (G. Schwarz, *Ann. Statist.* 6, 1978), or where the encoder's rounding is most of the
+/// noise: rows of one place share that, and no level says so.
 pub(super) fn beside_a_wandering_zero(data: &Data<'_>, fit: &Fit) -> Option<(Fit, Intervals)> {
+    if data.is_limited_by_rounding() {
+        return None;
+    }
     let of_zero = values_of_zero(fit);
     let (now, rows) = generalised(data, fit)?;
     let mut all = rows.intervals(data, &now);
@@ -40,10 +44,10 @@ pub(super) fn gain_beside_a_wandering_zero(data: &Data<'_>, fit: &Fit, less: &Fi
 
 /// `fit` with the values of generalised least squares, but for the zero's own, which stay.
 fn generalised(data: &Data<'_>, fit: &Fit) -> Option<(Fit, Rows)> {
-    let of_zero = values_of_zero(fit);
-    if of_zero.is_empty() {
+    if !wanders(fit) {
         return None;
     }
+    let of_zero = values_of_zero(fit);
     let plain = unweighted(data);
     let mut now = fit.clone();
     let mut rows = Rows::of(&plain, data, &now, &of_zero)?;
@@ -62,17 +66,18 @@ fn generalised(data: &Data<'_>, fit: &Fit) -> Option<(Fit, Rows)> {
 
 /// Whether a wandering zero is among the effects of `fit`.
 pub(super) fn wanders(fit: &Fit) -> bool {
-    !values_of_zero(fit).is_empty()
+    fit.model.times("force_drift") > 0
 }
 
-/// Places of the values of a wandering zero.
+/// Places of the values of the sensor's zero, which a level takes for its own: those of its effects, and each trial's.
 fn values_of_zero(fit: &Fit) -> Vec<usize> {
-    let terms = fit.model.terms.iter().enumerate().filter(|(_, term)| term.name() == "force_drift");
+    const ZEROS: [&str; 2] = ["force_drift", "force_bias"];
+    let terms = fit.model.terms.iter().enumerate().filter(|(_, term)| ZEROS.contains(&term.name()));
     let values = terms.flat_map(|(nth, term)| {
         let first = fit.model.first_value_of(nth);
         first..first + fit.model.count_of(term)
     });
-    values.collect()
+    fit.model.own_zeros().chain(values).collect()
 }
 
 /// `data` whose rows that count are worth one.
@@ -152,11 +157,16 @@ mod tests {
     use rand_distr::{Distribution as _, Normal};
 
     use super::super::circumstances::Circumstances;
-    use super::super::model::index;
+    use super::super::data::Data;
+    use super::super::model::{OwnValues, index};
+    use super::super::nominal::nominal_fit;
     use super::super::outcome::{Outcome, identify};
     use super::super::testing::{RATE, TestContact};
+    use super::{values_of_zero, wanders};
     use crate::diagnose::interval::NORMAL_97_5;
+    use crate::diagnose::term::Term;
     use crate::diagnose::verdict::Verdict;
+    use crate::effects;
     use crate::recording::Recording;
 
     fn found(recordings: &[Recording]) -> Outcome {
@@ -199,5 +209,23 @@ mod tests {
                 assert!(low <= value && value <= high, "{at}: {value}, {low} to {high}");
             }
         }
+    }
+
+    /// Four values that trials share, the second trial's surface and zero, a bias, and the rate of a ramp.
+    #[test]
+    fn what_a_level_takes_for_its_own_is_every_zero() {
+        let trials = [1, 2].map(|seed| TestContact::PLAIN.trial(seed));
+        let mut fit = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        fit.model.own = OwnValues { zero: true, ..OwnValues::NONE };
+        for name in ["force_bias", "hysteresis", "force_drift"] {
+            let term = Term { effect: effects::find(name).unwrap(), form: 0 };
+            assert!(!wanders(&fit));
+            fit.model = fit.model.with(term);
+        }
+        let loops = fit.model.count_of(&fit.model.terms[1]);
+        assert!(wanders(&fit));
+        assert_eq!(values_of_zero(&fit), [5, 6, 7 + loops]);
+        fit.model.own = OwnValues::NONE;
+        assert_eq!(values_of_zero(&fit), [5, 6 + loops]);
     }
 }
