@@ -38,7 +38,9 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
             Some(_) => left - held.energy > LEAST_LINE_POWER * expected,
             None => {
                 share(*left) >= LEAST_HELD_OUT_SHARE
-                    && (!is_within_rounding(data, *without) || acts_in_free_motion(data, &fit, less))
+                    && (!is_within_rounding(data, *without)
+                        || is_beneath_sensors(data, rms(data, &held.residual))
+                        || acts_in_free_motion(data, &fit, less))
             }
         };
         let needless = (0..without.len()).filter(|nth| !is_confirmed(&without[*nth]));
@@ -143,6 +145,12 @@ fn is_within_rounding(data: &Data<'_>, without: f64) -> bool {
     data.is_limited_by_rounding() && without < data.most_noise()
 }
 
+/// Whether a law that leaves `held` of unseen rows, N or N m in root mean square, leaves notably less than the sensors are said to: then they leave no more
+/// than that (the variance of unit weight a posteriori: E. M. Mikhail, *Observations and Least Squares*, 1976), and what is beyond it is no rounding.
+fn is_beneath_sensors(data: &Data<'_>, held: f64) -> bool {
+    NOTABLE_POWER * held.powi(2) < data.expected_noise().powi(2)
+}
+
 /// Whether `less` leaves notably more in the free motion before the surface of `more` than that does, over what is stated: there the encoder's rounding
 /// makes no force.
 fn acts_in_free_motion(data: &Data<'_>, more: &Fit, less: &Fit) -> bool {
@@ -188,6 +196,8 @@ mod tests {
         assert!(!is_within_rounding(&plain, 0.5 * FORCE_NOISE));
         let rounded = Data { noise: vec![vec![(10.0 * FORCE_NOISE).powi(2); trials[0].len()]], ..plain };
         assert!(is_within_rounding(&rounded, 9.9 * FORCE_NOISE) && !is_within_rounding(&rounded, 10.1 * FORCE_NOISE));
+        // A law that leaves three quarters of the power shows that the rounding leaves no more: 8.7 squared is 76 of 100.
+        assert!(is_beneath_sensors(&rounded, 8.6 * FORCE_NOISE) && !is_beneath_sensors(&rounded, 8.8 * FORCE_NOISE));
     }
 
     /// A zero is off by one and a half of the noise, and a spring stiffens: rounding in contact can be the one and not the other.
