@@ -162,25 +162,12 @@ mod tests {
     use crate::diagnose::contact::outcome::identify;
     use crate::diagnose::contact::testing::{FORCE_NOISE, RATE, TestContact};
     use crate::diagnose::interval::NORMAL_97_5;
-    use rand::SeedableRng as _;
-    use rand_distr::{Distribution as _, Normal};
 
     /// A zero that wanders by 0.05 N in a root second. Eight straight lines in twelve seconds leave 25 mN of it, 0.05 sqrt(1.5 / 6); what is
     /// followed beside them leaves a quarter.
     #[test]
     fn a_wandering_zero_is_followed() {
-        let wandering = |seed: u64| {
-            let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed + 10);
-            let normal = Normal::new(0.0, 0.05 / f64::sqrt(RATE)).unwrap();
-            let mut recording = TestContact::PLAIN.recording(seed);
-            let mut zero = 0.0;
-            for force in recording.force.iter_mut().flatten() {
-                zero += normal.sample(&mut random);
-                *force += zero;
-            }
-            recording
-        };
-        let recordings = [1, 2].map(wandering);
+        let recordings = [1, 2].map(|seed| TestContact::PLAIN.wandering(0.05, seed));
         let trials = || recordings.each_ref().map(TestContact::seen).to_vec();
         let contact =
             identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();

@@ -13,7 +13,7 @@ use super::lines::line_beyond;
 use super::model::index;
 use super::rest::Rest;
 use super::search::Search;
-use super::wandering_zero::gain_beside_a_wandering_zero;
+use super::wandering_zero::likelihood_beside_a_wandering_zero;
 use crate::diagnose::evidence::{NamedTerm, share_beyond_noise};
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::effects::ExcitationStats;
@@ -80,8 +80,9 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
 /// The effect that gains least over `without` it, beside a zero that wanders, where that is less than any is told for: what follows such a zero
 /// alone gains nothing where rows are taken with the errors that they share.
 fn followed(data: &Data<'_>, fit: &Fit, without: &[(Fit, f64, f64)]) -> Option<usize> {
+    let whole = likelihood_beside_a_wandering_zero(data, fit)?;
     let gains = without.iter().enumerate().filter_map(|(nth, (less, ..))| {
-        let gain = gain_beside_a_wandering_zero(data, fit, less)?;
+        let gain = whole - likelihood_beside_a_wandering_zero(data, less)?;
         Some((nth, gain))
     });
     let (nth, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;

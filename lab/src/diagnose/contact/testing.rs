@@ -120,6 +120,19 @@ impl TestContact {
         Self::seen_in_means(recording, 1)
     }
 
+    /// The recording with a zero that wanders by `per_root_second`, N in a root second.
+    pub fn wandering(&self, per_root_second: f64, seed: u64) -> Recording {
+        let mut random = ChaCha12Rng::seed_from_u64(seed + 10);
+        let normal = Normal::new(0.0, per_root_second / RATE.sqrt()).unwrap();
+        let mut recording = self.recording(seed);
+        let mut zero = 0.0;
+        for force in recording.force.iter_mut().flatten() {
+            zero += normal.sample(&mut random);
+            *force += zero;
+        }
+        recording
+    }
+
     /// The same in means of `every` rows.
     pub fn seen_in_means(recording: &Recording, every: usize) -> ContactTrial {
         let channel = |noise: f64| Channel { resolution: 0.0, noise };

@@ -14,7 +14,7 @@ use crate::diagnose::interval::{Clusters, Intervals, spread};
 use crate::diagnose::linalg::energy;
 use crate::diagnose::local_level::LocalLevel;
 
-/// Rounds of levels and values at the most; each leaves a hundredth of the step before.
+/// Rounds of levels and values at the most; the search ends before where a step no longer counts.
 const ROUNDS: usize = 8;
 
 /// Part of the squares below which a step no longer counts.
@@ -36,10 +36,9 @@ pub(super) fn beside_a_wandering_zero(data: &Data<'_>, fit: &Fit) -> Option<(Fit
     Some((now, all))
 }
 
-/// By how much `fit` is likelier beside a zero that wanders than `less`, nats; `None` where none is told.
-pub(super) fn gain_beside_a_wandering_zero(data: &Data<'_>, fit: &Fit, less: &Fit) -> Option<f64> {
-    let likelihood = |fit: &Fit| generalised(data, fit).map(|(_, rows)| rows.log_likelihood());
-    Some(likelihood(fit)? - likelihood(less)?)
+/// Log likelihood of `fit` with the values of generalised least squares beside a zero that wanders, nats; `None` where none is told.
+pub(super) fn likelihood_beside_a_wandering_zero(data: &Data<'_>, fit: &Fit) -> Option<f64> {
+    generalised(data, fit).map(|(_, rows)| rows.log_likelihood())
 }
 
 /// `fit` with the values of generalised least squares, but for the zero's own, which stay.
@@ -153,15 +152,12 @@ impl Rows {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng as _;
-    use rand_distr::{Distribution as _, Normal};
-
     use super::super::circumstances::Circumstances;
     use super::super::data::Data;
     use super::super::model::{OwnValues, index};
     use super::super::nominal::nominal_fit;
     use super::super::outcome::{Outcome, identify};
-    use super::super::testing::{RATE, TestContact};
+    use super::super::testing::TestContact;
     use super::{values_of_zero, wanders};
     use crate::diagnose::interval::NORMAL_97_5;
     use crate::diagnose::term::Term;
@@ -181,18 +177,7 @@ mod tests {
     #[test]
     fn a_spring_is_known_beside_a_zero_that_wanders() {
         for seeds in [[1, 2], [3, 4], [5, 6]] {
-            let recordings = seeds.map(|seed| {
-                let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed + 10);
-                let normal = Normal::new(0.0, 0.05 / f64::sqrt(RATE)).unwrap();
-                let mut recording = TestContact::PLAIN.recording(seed);
-                let mut zero = 0.0;
-                for force in recording.force.iter_mut().flatten() {
-                    zero += normal.sample(&mut random);
-                    *force += zero;
-                }
-                recording
-            });
-            let outcome = found(&recordings);
+            let outcome = found(&seeds.map(|seed| TestContact::PLAIN.wandering(0.05, seed)));
             assert_eq!((outcome.chosen.model.names(0), outcome.verdict), (vec!["force_drift"], Verdict::Explained));
             for (at, truth) in [(index::STIFFNESS, 300.0), (index::DAMPING, 6.0)] {
                 let (value, [low, high]) = (outcome.chosen.values[at], outcome.intervals[at]);

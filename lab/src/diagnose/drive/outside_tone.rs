@@ -23,7 +23,7 @@ const ROUNDS: usize = 3;
 /// The tone and its octave.
 const HARMONICS: usize = 2;
 
-/// Part of a line of the spectrum to which the frequency is sought: a phase is off by a fiftieth of a turn at the ends of the longest trial.
+/// Part of a line of the padded spectrum to which the frequency is sought: over the longest trial a phase is off by an eightieth of a turn at the most.
 const PRECISION: f64 = 0.05;
 
 impl Search<'_> {

@@ -18,6 +18,9 @@ impl Search<'_> {
     /// of a rigid drive alone: what a link moves can look like any.
     #[must_use]
     pub fn without_rivalled(&self, fit: &Fit) -> Option<Fit> {
+        if fit.model == self.nominal.model {
+            return None;
+        }
         let own = self.nominal.model.terms.len();
         let told = || (own..fit.model.terms.len()).filter(|at| fit.model.terms[*at].is_told());
         let at =
