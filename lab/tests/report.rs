@@ -12,8 +12,10 @@ mod safe;
 mod signal;
 
 use answers::{explained, nano, no_mismatch, parameters, unknown, value};
-use palpate_lab::diagnose::report::diagnosis::{Correlations, Diagnosis, Phase, PlotData, Verdict};
+use palpate_lab::diagnose::report::diagnosis::{Correlations, Diagnosis, Finding, Phase, PlotData, Verdict};
 use palpate_lab::diagnose::report::html;
+use palpate_lab::diagnose::report::summary::summary;
+use palpate_lab::rig::Coordinate;
 use reading::{bytes, doubles, floats, prose};
 use signal::{Size, trace};
 
@@ -136,6 +138,22 @@ fn what_is_unknown_is_owned_and_located() {
             "record more of where it lies (while drawing back, x 3-9 mm, v &lt; -0.02 m/s)",
         ],
     );
+}
+
+/// What was found out stands in the head of the page, above what is merely remarked.
+#[test]
+fn effort_in_the_force_reading_is_told_above_the_pictures() {
+    let (mut answer, pictures) = unknown();
+    answer.findings.push(Finding {
+        code: "effort_in_force",
+        grave: false,
+        place: "force".into(),
+        text: "The force reading follows the drive's effort by a factor of 0.3.".into(),
+    });
+    answer.summary = summary(&answer, Coordinate::Linear);
+    let diagnosis = (answer, pictures);
+    says(&diagnosis, &["The force reading holds effort of the drive", "the drive was judged by the force without it"]);
+    assert!(!written(&diagnosis).contains("effects that were tried explains it"));
 }
 
 #[test]

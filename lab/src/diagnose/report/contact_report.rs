@@ -157,6 +157,10 @@ fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, loc
     let is_left = matches!(outcome.verdict, Verdict::PartlyExplained | Verdict::Unknown);
     let rest = is_left.then(|| {
         let mut rest = unknown(locations, !named.is_empty());
+        if let Some(crosstalk) = outcome.crosstalk {
+            rest.acts_in = Place::Sensor.name();
+            rest.statement = format!("{} No effect of the list is that.", coupling(crosstalk));
+        }
         if let Some(curve) = &outcome.learned {
             // Where nothing is named the reader knows refitted values alone.
             let [_, refitted, improved] = residuals.of_laws;
@@ -204,6 +208,16 @@ fn unknown(locations: &[Location], beside: bool) -> Physics {
         parameters: Vec::new(),
         on_drive: None,
     }
+}
+
+/// How the force reading goes with the effort, in a sentence.
+fn coupling(Crosstalk { part, memory_s }: Crosstalk) -> String {
+    let what = if memory_s.is_finite() {
+        format!("follows the steps of the drive's effort, forgotten within {},", quantity::rounded(memory_s, "s", 2))
+    } else {
+        "follows the drive's effort".to_owned()
+    };
+    format!("The force reading {what} by a factor of {}.", quantity::short(part))
 }
 
 /// What a learned curve looks like: only what stands out of the noise.
@@ -291,18 +305,13 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
     let mut tell = |code: &'static str, place: &str, text: &str| {
         findings.push(Finding { code, grave: false, place: place.to_owned(), text: text.to_owned() });
     };
-    if let Some(Crosstalk { part, memory_s }) = outcome.crosstalk {
-        let what = if memory_s.is_finite() {
-            format!(", its steps, forgotten within {},", quantity::rounded(memory_s, "s", 2))
-        } else {
-            String::new()
-        };
+    if let Some(crosstalk) = outcome.crosstalk {
         let text = format!(
-            "The force reading follows the drive's effort{what} by a factor of {}: that beside the plain contact law leaves less than the effects \
-             that were fitted in its place. The effort couples into the reading, by its wires, its ground or the frame.",
-            quantity::short(part)
+            "{} That beside the plain contact law leaves less than the effects that were fitted in its place. The effort couples into the \
+             reading, by its wires, its ground or the frame.",
+            coupling(crosstalk)
         );
-        tell("effort_in_force", "force", &text);
+        tell(summary::EFFORT_IN_FORCE, "force", &text);
     }
     if outcome.is_limited_by_rounding {
         tell(

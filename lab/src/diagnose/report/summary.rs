@@ -12,6 +12,9 @@ pub(super) const MOST_OVER_NOISE: f64 = 1.15;
 /// The same from which the two figures differ to the eye.
 const ABOUT_NOISE: f64 = 1.03;
 
+/// Code of the finding that the force reading holds effort of the drive.
+pub(super) const EFFORT_IN_FORCE: &str = "effort_in_force";
+
 /// Share of a mismatch from which a place holds most of it.
 pub const MAJORITY_SHARE: f64 = 0.5;
 
@@ -19,6 +22,11 @@ pub const MAJORITY_SHARE: f64 = 0.5;
 #[must_use]
 pub fn is_noise(fit: &FitQuality) -> bool {
     fit.improved < MOST_OVER_NOISE * fit.noise_floor
+}
+
+/// Whether what is not named is effort that the force reading holds.
+pub(super) fn holds_effort(answer: &Diagnosis) -> bool {
+    answer.findings.iter().any(|finding| finding.code == EFFORT_IN_FORCE)
 }
 
 /// Whether refitted values leave more than those of the rig file on rows that no fit saw, in the three digits that a reader sees.
@@ -62,14 +70,21 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                     )
                 },
             );
-            format!(
-                "Something is missing that no effect of the list explains: {before} are left where the sensors leave {expected_noise}.{place}"
-            )
+            let what = if holds_effort(answer) {
+                "The force reading holds effort of the drive, which is no effect of the list"
+            } else {
+                "Something is missing that no effect of the list explains"
+            };
+            format!("{what}: {before} are left where the sensors leave {expected_noise}.{place}")
         }
         Verdict::Explained | Verdict::PartlyExplained => {
             let names: Vec<String> =
                 answer.physics.iter().filter(|p| p.name != "unknown").map(|p| effect_name(&p.name)).collect();
-            let rest = if answer.verdict == Verdict::PartlyExplained {
+            let rest = if answer.verdict == Verdict::PartlyExplained && holds_effort(answer) {
+                format!(
+                    " The force reading holds effort of the drive besides, which is no effect of the list: the sensors alone would leave {expected_noise}."
+                )
+            } else if answer.verdict == Verdict::PartlyExplained {
                 format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")
             } else if is_noise(fit) {
                 let about = if fit.improved > ABOUT_NOISE * fit.noise_floor { "about " } else { "" };

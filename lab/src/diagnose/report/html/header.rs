@@ -1,7 +1,7 @@
 //! The answer in one heading and one sentence, the picture that shows it, and what it names.
 
 use super::super::diagnosis::{Diagnosis, PlotData, Verdict};
-use super::super::summary::is_noise;
+use super::super::summary::{holds_effort, is_noise};
 use super::wording::{channel, largest_part, list, location, multiple, share, title, worst};
 use super::{effect, finding, state_plot};
 use crate::page::quantity::rounded;
@@ -55,7 +55,8 @@ fn meaning(answer: &Diagnosis) -> Markup {
         },
         Verdict::PartlyExplained => html! {
             "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
-            " above the noise. The rest is more than noise, and no effect of the list explains it."
+            " above the noise. The rest is more than noise, and "
+            @if holds_effort(answer) { "some of it " a href="#physics" { "couples into the force reading" } "." } @else { "no effect of the list explains it." }
         },
         Verdict::Unknown => unknown(answer),
     }
@@ -63,8 +64,13 @@ fn meaning(answer: &Diagnosis) -> Markup {
 
 fn unknown(answer: &Diagnosis) -> Markup {
     html! {
-        "The recordings hold something real that the simulation lacks, and none of the " (answer.checked.len())
-        " effects that were tried explains it. So it is not named: a wrong name would be worse than none."
+        @if holds_effort(answer) {
+            "Effects of the contact that were fitted to the effort in the reading leave more than the effort itself: they are not named. See "
+            a href="#physics" { "what couples in" } " below; the drive was judged by the force without it."
+        } @else {
+            "The recordings hold something real that the simulation lacks, and none of the " (answer.checked.len())
+            " effects that were tried explains it. So it is not named: a wrong name would be worse than none."
+        }
         @if let Some(place) = worst(answer, None) {
             " " (largest_part(place)) (location(place)) "."
         }
