@@ -14,9 +14,20 @@ use super::model::index;
 use super::rest::Rest;
 use super::search::Search;
 use super::wandering_zero::likelihood_beside_a_wandering_zero;
+use super::worth::BLOCKS;
 use crate::diagnose::evidence::{NamedTerm, share_beyond_noise};
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::effects::ExcitationStats;
+
+/// A law without one of its effects.
+struct Without {
+    law: Fit,
+    /// What it leaves of unseen rows: weighted squares, and N or N m in root mean square.
+    energy: f64,
+    rms: f64,
+    /// Share that the effect takes where the two laws differ, see [`share_where_they_differ`].
+    local_share: f64,
+}
 
 /// The effects that unseen rows confirm, with what each takes of them.
 pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit, HeldOut, Vec<NamedTerm>) {
@@ -25,52 +36,55 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
     loop {
         let held = folds.held_out(data, &fit);
         let first = search.nominal.model.terms.len();
-        let without: Vec<(Fit, f64, f64)> = (first..fit.model.terms.len())
+        let correlated_rows = Rest::of(data, &fit).correlated_rows;
+        let without: Vec<Without> = (first..fit.model.terms.len())
             .map(|at| {
-                let less = search.without(&fit, at);
-                let left = folds.held_out(data, &less);
-                (less, left.energy, rms(data, &left.residual))
+                let law = search.without(&fit, at);
+                let left = folds.held_out(data, &law);
+                let local_share = share_where_they_differ(data, [&left, &held], correlated_rows);
+                Without { law, energy: left.energy, rms: rms(data, &left.residual), local_share }
             })
             .collect();
         let share = |left: f64| share_taken(left, held.energy, expected);
         // A line is no part of what a law leaves.
-        let is_confirmed = |(less, left, without): &(Fit, f64, f64)| match line_beyond(&fit, less) {
-            Some(_) => left - held.energy > LEAST_LINE_POWER * expected,
+        let is_confirmed = |without: &Without| match line_beyond(&fit, &without.law) {
+            Some(_) => without.energy - held.energy > LEAST_LINE_POWER * expected,
             None => {
-                share(*left) >= LEAST_HELD_OUT_SHARE
-                    && (!is_within_rounding(data, *without)
+                share(without.energy).max(without.local_share) >= LEAST_HELD_OUT_SHARE
+                    && (!is_within_rounding(data, without.rms)
                         || is_beneath_sensors(data, rms(data, &held.residual))
-                        || acts_in_free_motion(data, &fit, less))
+                        || acts_in_free_motion(data, &fit, &without.law))
             }
         };
         let needless = (0..without.len()).filter(|nth| !is_confirmed(&without[*nth]));
-        if let Some(nth) = needless.min_by(|a, b| without[*a].1.total_cmp(&without[*b].1)) {
-            fit = without[nth].0.clone();
+        if let Some(nth) = needless.min_by(|a, b| without[*a].energy.total_cmp(&without[*b].energy)) {
+            fit = without[nth].law.clone();
             continue;
         }
         // Beside others alone: what stands for a mismatch by itself is told by the likelihood.
-        let is_little = |nth: &usize| without.len() > 1 && share(without[*nth].1) < LEAST_TOLD_SHARE;
+        let is_little = |nth: &usize| without.len() > 1 && share(without[*nth].energy) < LEAST_TOLD_SHARE;
         let mut little: Vec<usize> = (0..without.len()).filter(is_little).collect();
-        little.sort_by(|a, b| without[*a].1.total_cmp(&without[*b].1));
+        little.sort_by(|a, b| without[*a].energy.total_cmp(&without[*b].energy));
         if let Some(nth) = undetermined(search, &fit, little.into_iter().map(|nth| first + nth)) {
-            fit = without[nth - first].0.clone();
+            fit = without[nth - first].law.clone();
             continue;
         }
         if let Some(at) = unidentified(search, &fit, first) {
-            fit = without[at - first].0.clone();
+            fit = without[at - first].law.clone();
             continue;
         }
         if let Some(nth) = followed(data, &fit, &without) {
-            fit = without[nth].0.clone();
+            fit = without[nth].law.clone();
             continue;
         }
-        let named = without.iter().enumerate().map(|(nth, (less, left, without))| NamedTerm {
+        let named = without.iter().enumerate().map(|(nth, without)| NamedTerm {
             at: first + nth,
-            held_out_share: share(*left).clamp(0.0, 1.0),
-            p_value: (COMPARISONS * likelihood_ratio_p(search.worth(&fit, less).gain, added_values(&fit, less)))
-                .min(1.0)
-                .shown(),
-            without: *without,
+            held_out_share: share(without.energy).clamp(0.0, 1.0),
+            p_value: (COMPARISONS
+                * likelihood_ratio_p(search.worth(&fit, &without.law).gain, added_values(&fit, &without.law)))
+            .min(1.0)
+            .shown(),
+            without: without.rms,
         });
         let named = named.collect();
         return (fit, held, named);
@@ -79,10 +93,10 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
 
 /// The effect that gains least over `without` it, beside a zero that wanders, where that is less than any is told for: what follows such a zero
 /// alone gains nothing where rows are taken with the errors that they share.
-fn followed(data: &Data<'_>, fit: &Fit, without: &[(Fit, f64, f64)]) -> Option<usize> {
+fn followed(data: &Data<'_>, fit: &Fit, without: &[Without]) -> Option<usize> {
     let whole = likelihood_beside_a_wandering_zero(data, fit)?;
-    let gains = without.iter().enumerate().filter_map(|(nth, (less, ..))| {
-        let gain = whole - likelihood_beside_a_wandering_zero(data, less)?;
+    let gains = without.iter().enumerate().filter_map(|(nth, without)| {
+        let gain = whole - likelihood_beside_a_wandering_zero(data, &without.law)?;
         Some((nth, gain))
     });
     let (nth, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -140,6 +154,24 @@ fn share_taken(left: f64, held: f64, expected: f64) -> f64 {
     share_beyond_noise(left, held, expected, NOISE_POWER_KNOWN_TO.value())
 }
 
+/// The share of [`share_taken`] on those rows alone in which the two laws, the lesser first, predict forces that differ by more than a deviation of the
+/// sensors: what acts in a hundredth of the time, as a pull at each release does, is there as large as it is. Zero where those rows tell no more than
+/// [`BLOCKS`] independent ones of which `correlated_rows` tell as much as one. The predictions are of values that these rows did not give, so that
+/// their noise has no part in which of them count.
+fn share_where_they_differ(data: &Data<'_>, [left, held]: [&HeldOut; 2], correlated_rows: f64) -> f64 {
+    let residuals = left.residual.iter().flatten().zip(held.residual.iter().flatten());
+    let sensors = data.weights.iter().flatten().zip(data.noise.iter().flatten());
+    let differing = residuals.zip(sensors).filter(|((left, held), (weight, _))| (*left - *held).abs() * **weight > 1.0);
+    let [mut rows, mut before, mut after, mut expected] = [0.0; 4];
+    for ((left, held), (weight, variance)) in differing {
+        rows += 1.0;
+        before += (left * weight).powi(2);
+        after += (held * weight).powi(2);
+        expected += variance * weight * weight;
+    }
+    if rows < BLOCKS as f64 * correlated_rows { 0.0 } else { share_taken(before, after, expected) }
+}
+
 /// Whether a law that leaves `without`, N or N m in root mean square, leaves no more than the sensors do, where the encoder's rounding is most of their
 /// noise: it repeats with the place, and any law of the place takes some of it.
 fn is_within_rounding(data: &Data<'_>, without: f64) -> bool {
@@ -187,6 +219,56 @@ mod tests {
         // More than that is a law's, however little is left.
         assert!((share_taken(1010.0, 610.0, 1000.0) - 1.0).abs() < 1e-12);
         assert_eq!(share_taken(1000.0, 1001.0, 1000.0), 0.0);
+    }
+
+    /// A surface that pulls with 32 mN and lets go after a quarter of a millimetre: in a hundredth of the time, of which it is most.
+    #[test]
+    fn what_acts_in_a_hundredth_of_the_time_is_told_by_its_size_there() {
+        const SIZES: [f64; 2] = [0.032, 2.5e-4];
+        let (pulls, values) = TestContact::PLAIN.law_with("adhesion", 3, &SIZES);
+        let pulled = |seed: u64| {
+            let mut trial = TestContact::PLAIN.trial(seed);
+            let trials = [trial.clone()];
+            let data = Data::new(&trials);
+            let nominal = nominal_fit(&data, &TestContact::nominal());
+            let without = data.residual(&nominal.model, &values[..nominal.values.len()], 0);
+            let pulls = data.residual(&pulls, &values, 0);
+            let rows = trial.force.iter_mut().zip(without.iter().zip(&pulls));
+            rows.for_each(|(force, (without, pulls))| *force += without - pulls);
+            trial
+        };
+        let trials = [1, 2, 3, 4].map(pulled);
+        let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        let [data, coarse] = [(), ()].map(|()| Data::new(&trials).weighed(&nominal));
+        // What belongs to a trial alone has a value in each.
+        let start: Vec<f64> = nominal.values.iter().copied().chain(SIZES).collect();
+        let fit = data.fit(&nominal.model.with(pulls.terms[0]), &start, Effort::FULL);
+        let search = Search { nominal: data.again(&nominal), data, coarse, circumstances: Circumstances::default() };
+        let (_, _, named) = believed(&search, &Folds::of(&search.data), fit);
+        assert_eq!(named.len(), 1);
+        // On the whole it is too little to be told from noise that is known to a third.
+        let share = named[0].held_out_share;
+        assert!(share > 0.0 && share < LEAST_HELD_OUT_SHARE.value(), "{share}");
+    }
+
+    /// By hand: of sixty rows in which two laws differ, the one leaves four times the noise and the other the noise.
+    #[test]
+    fn the_share_where_laws_differ_is_that_of_rows_enough() {
+        let trials = [TestContact::PLAIN.trial(1)];
+        let data = Data::new(&trials);
+        let rows = trials[0].len();
+        let leaves = |differing: usize| {
+            let residual = (0..rows).map(|row| if row < differing { 2.0 } else { 0.5 } * FORCE_NOISE).collect();
+            HeldOut { residual: vec![residual], energy: 0.0 }
+        };
+        let share = |differing: usize, correlated_rows: f64| {
+            let held = HeldOut { residual: vec![vec![0.9 * FORCE_NOISE; rows]], energy: 0.0 };
+            share_where_they_differ(&data, [&leaves(differing), &held], correlated_rows)
+        };
+        // 4 - 0.81 of 4 - 1, which is less: all.
+        assert!((share(60, 1.0) - 1.0).abs() < 1e-9);
+        // So few say nothing, and those in which the laws say the same are none.
+        assert_eq!([share(39, 1.0), share(60, 2.0), share(0, 1.0)], [0.0; 3]);
     }
 
     /// An encoder whose step is worth ten times the force sensor's noise: below what both leave, nothing is told from rounding.

@@ -86,8 +86,8 @@ thresholds! { "contact";
     MOST_TAKEN = 0.5, "1", derived;
     /// Share of the force's variance before the surface that the position may explain: with more than half of it the tool is not free there.
     LARGEST_SHARE_BY_PLACE = 0.5, "1", derived;
-    /// Part of what a law leaves in free motion that a force of the height alone leaves, in power, below which something acts at a distance that
-    /// no law of the contact says, and its names are not believed: half, as beside a drive's curve over position.
+    /// Part of what a law leaves in free motion beyond the sensors' noise that a force of the height alone leaves, in power, below which something
+    /// acts at a distance that no law of the contact says, and its names are not believed: half, as beside a drive's curve over position.
     HEIGHT_PART = 0.5, "1", chosen;
     /// Share of a wave's variance that place and direction of the tool have from which the wave is not told from a law of the motion: half.
     LARGEST_SHARE_IN_STEP = 0.5, "1", derived;

@@ -1,15 +1,15 @@
 //! How far the effects that were found stand for the mismatch.
 
 use super::criteria::{
-    HEIGHT_PART, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, MOST_LEFT, NOTABLE_POWER, TOLD_SHARE, UNKNOWN_PART_OF_FORCE,
-    VALUES_MATTER,
+    HEIGHT_PART, LEAST_PART_OF_FORCE, LEAST_TOLD_SHARE, MOST_LEFT, NOISE_POWER_KNOWN_TO, NOTABLE_POWER, TOLD_SHARE,
+    UNKNOWN_PART_OF_FORCE, VALUES_MATTER,
 };
 use super::fit::Fit;
 use super::free_motion::left_by_height_and_law;
 use super::held_out::{HeldOut, rms};
 use super::rest::Rest;
 use super::search::Search;
-use crate::diagnose::evidence::NamedTerm;
+use crate::diagnose::evidence::{NamedTerm, share_beyond_noise};
 use crate::diagnose::verdict::Verdict;
 
 /// Whether named effects leave something notable and take less of the mismatch than they leave.
@@ -30,7 +30,13 @@ pub(super) fn acts_at_a_distance(search: &Search<'_>, fit: &Fit, named: &[NamedT
     let data = &search.data;
     let residual = data.residuals(&fit.model, &fit.values);
     let left = left_by_height_and_law(data.trials, fit, &data.noise, &residual);
-    left.is_some_and(|[by_height, by_law]| by_law > NOTABLE_POWER.value() && by_height < HEIGHT_PART * by_law)
+    left.is_some_and(|[by_height, by_law]| by_law > NOTABLE_POWER.value() && leaves_little(by_height, by_law))
+}
+
+/// Whether a force of the height alone, which leaves `by_height` in free motion, leaves less than [`HEIGHT_PART`] of what a law leaves there, `by_law`, beyond
+/// the sensors' noise; both are multiples of that noise's power.
+fn leaves_little(by_height: f64, by_law: f64) -> bool {
+    share_beyond_noise(by_law, by_height, 1.0, NOISE_POWER_KNOWN_TO.value()) > 1.0 - HEIGHT_PART.value()
 }
 
 /// Whether what `fit` leaves, `rest`, is more than the sensors may leave, by the rows' weights and as it is told, in newtons, and a part
@@ -77,6 +83,7 @@ mod tests {
     use super::super::outcome::identify;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::super::trial::ContactTrial;
+    use super::leaves_little;
     use crate::diagnose::verdict::Verdict;
 
     fn judged(trials: &dyn Fn() -> Vec<ContactTrial>) -> (Vec<&'static str>, Verdict, f64) {
@@ -92,6 +99,15 @@ mod tests {
         let pulled = || [1, 2].map(|seed| TestContact::PLAIN.trial_with(seed, pull)).to_vec();
         let (names, verdict, _) = judged(&pulled);
         assert_eq!((names, verdict), (vec![], Verdict::Unknown));
+    }
+
+    /// By hand, in multiples of the noise's power.
+    #[test]
+    fn a_force_of_the_height_leaves_little_of_what_is_beyond_the_noise() {
+        // All of the 0.7 beyond the noise; a third of it; two thirds of nine.
+        assert!(leaves_little(1.0, 1.7) && !leaves_little(1.4667, 1.7) && leaves_little(4.0, 10.0));
+        // Noise is known to a third: what is taken of less is no part of it.
+        assert!(!leaves_little(0.9, 1.05));
     }
 
     /// Noise that remembers for six rows, in free motion whose pieces are too short for the wavelets of that memory: by these alone the noise is a

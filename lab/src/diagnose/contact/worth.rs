@@ -32,8 +32,8 @@ pub struct Worth {
     pub price: f64,
 }
 
-/// Blocks that likelihoods are compared over.
-const BLOCKS: usize = 40;
+/// Blocks that likelihoods are compared over: as many independent rows tell the power of a part of them to a quarter.
+pub(super) const BLOCKS: usize = 40;
 
 impl Search<'_> {
     /// What `more` has over `less`.
