@@ -82,7 +82,7 @@ impl SensorNoise {
     /// That of a law that `stands`, drawn from `seed`.
     fn beside(search: &Search<'_>, stands: &Validated, common: &Noise, seed: u64) -> Self {
         let (data, scales) = (&search.data, &search.scales);
-        let expected = expected_noise(data, &stands.fit, common, seed);
+        let expected = expected_noise(data, &stands.fit, common, scales.resolution, seed);
         let missing = &stands.held_out.missing;
         let at_rest = noise_at_rest(data.trials, missing, search.band_hz, scales.resolution, scales.travel);
         let recorded = expected.hypot(effort_noise(data, &stands.fit, common, seed)).max(at_rest.unwrap_or(0.0));
