@@ -14,7 +14,7 @@ use super::model::index;
 use super::rest::Rest;
 use super::search::Search;
 use super::wandering_zero::likelihood_beside_a_wandering_zero;
-use super::worth::BLOCKS;
+use super::worth::where_they_differ;
 use crate::diagnose::evidence::{NamedTerm, share_beyond_noise};
 use crate::diagnose::model_comparison::likelihood_ratio_p;
 use crate::effects::ExcitationStats;
@@ -154,22 +154,19 @@ fn share_taken(left: f64, held: f64, expected: f64) -> f64 {
     share_beyond_noise(left, held, expected, NOISE_POWER_KNOWN_TO.value())
 }
 
-/// The share of [`share_taken`] on those rows alone in which the two laws, the lesser first, predict forces that differ by more than a deviation of the
-/// sensors: what acts in a hundredth of the time, as a pull at each release does, is there as large as it is. Zero where those rows tell no more than
-/// [`BLOCKS`] independent ones of which `correlated_rows` tell as much as one. The predictions are of values that these rows did not give, so that
-/// their noise has no part in which of them count.
+/// The share of [`share_taken`] on those rows alone in which the predictions of the two laws, the lesser first, differ ([`where_they_differ`]): what acts in a hundredth of
+/// the time, as a pull at each release does, is there as large as it is. The predictions are of values that these rows did not give, so that their noise has no part
+/// in which of them count.
 fn share_where_they_differ(data: &Data<'_>, [left, held]: [&HeldOut; 2], correlated_rows: f64) -> f64 {
-    let residuals = left.residual.iter().flatten().zip(held.residual.iter().flatten());
-    let sensors = data.weights.iter().flatten().zip(data.noise.iter().flatten());
-    let differing = residuals.zip(sensors).filter(|((left, held), (weight, _))| (*left - *held).abs() * **weight > 1.0);
-    let [mut rows, mut before, mut after, mut expected] = [0.0; 4];
-    for ((left, held), (weight, variance)) in differing {
-        rows += 1.0;
-        before += (left * weight).powi(2);
-        after += (held * weight).powi(2);
-        expected += variance * weight * weight;
-    }
-    if rows < BLOCKS as f64 * correlated_rows { 0.0 } else { share_taken(before, after, expected) }
+    let weights = data.weights.concat();
+    let weighted = |law: &HeldOut| -> Vec<f64> {
+        law.residual.iter().flatten().zip(&weights).map(|(residual, weight)| residual * weight).collect()
+    };
+    let (left, held, noise) = (weighted(left), weighted(held), data.noise.concat());
+    let Some(rows) = where_they_differ(&left, &held, correlated_rows) else { return 0.0 };
+    let sum = |power: &dyn Fn(usize) -> f64| rows.iter().map(|row| power(*row)).sum::<f64>();
+    let expected = sum(&|row| noise[row] * weights[row].powi(2));
+    share_taken(sum(&|row| left[row].powi(2)), sum(&|row| held[row].powi(2)), expected)
 }
 
 /// Whether a law that leaves `without`, N or N m in root mean square, leaves no more than the sensors do, where the encoder's rounding is most of their

@@ -33,7 +33,7 @@ pub struct Worth {
 }
 
 /// Blocks that likelihoods are compared over: as many independent rows tell the power of a part of them to a quarter.
-pub(super) const BLOCKS: usize = 40;
+const BLOCKS: usize = 40;
 
 impl Search<'_> {
     /// What `more` has over `less`.
@@ -118,13 +118,18 @@ impl Search<'_> {
     }
 }
 
-/// Mean square of `less`, what the smaller of two laws leaves, over the rows in which the larger, which leaves `more`, differs from it by more than a deviation of
-/// the sensors, all in these: a reading that is clipped for a hundredth of the time leaves little on the whole. Zero where those rows tell no more than
-/// [`BLOCKS`] independent ones.
+/// Mean square of `less`, what the smaller of two laws leaves, where the larger, which leaves `more`, differs from it ([`where_they_differ`]): a reading that is
+/// clipped for a hundredth of the time leaves little on the whole. Zero where they hardly differ.
 fn left_where_they_differ(less: &[f64], more: &[f64], correlated_rows: f64) -> f64 {
-    let differing = less.iter().zip(more).filter(|(less, more)| (*less - *more).abs() > 1.0);
-    let (count, squares) = differing.fold((0.0, 0.0), |(count, sum), (less, _)| (count + 1.0, sum + less * less));
-    if count >= BLOCKS as f64 * correlated_rows { squares / count } else { 0.0 }
+    let Some(rows) = where_they_differ(less, more, correlated_rows) else { return 0.0 };
+    rows.iter().map(|row| less[*row] * less[*row]).sum::<f64>() / rows.len() as f64
+}
+
+/// The rows in which what two laws leave differs by more than a deviation of the sensors, in these; `None` where they tell no more than [`BLOCKS`] independent ones,
+/// of which `correlated_rows` tell as much as one.
+pub(super) fn where_they_differ(less: &[f64], more: &[f64], correlated_rows: f64) -> Option<Vec<usize>> {
+    let rows: Vec<usize> = (0..less.len()).filter(|row| (less[*row] - more[*row]).abs() > 1.0).collect();
+    (!rows.is_empty() && rows.len() as f64 >= BLOCKS as f64 * correlated_rows).then_some(rows)
 }
 
 /// Whether the recordings tell two laws apart: block by block, or, where few blocks speak, because the one leaves next to nothing of what the

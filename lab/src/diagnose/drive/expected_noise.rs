@@ -17,7 +17,7 @@ use super::trial::DriveTrial;
 const BEGINNINGS: usize = 8;
 
 /// Missing force that the sensors' noise alone would show: the encoder's and the force sensor's, drawn and passed through the same
-/// filter and smoother. An encoder of a `step` rounds the motion that the law saw: while that is slow the error repeats from row to row, and of what it
+/// filter and smoother. An encoder of a `step`, m or rad, rounds the motion that the law saw: while that is slow the error repeats from row to row, and of what it
 /// amounts to as a force far more lies where the drive's forces do than of white noise of the same size.
 /// It is no less than of white noise: where much is missing the law's path follows the encoder's own steps.
 #[must_use]
@@ -120,8 +120,8 @@ mod tests {
     use super::super::testing::{SCALES, TestDrive};
     use super::*;
 
-    /// A drive that goes half a millimetre to and fro behind an encoder of a tenth, with nothing missing: what its rounding leaves is expected, and is twice what white
-    /// noise of the same variance would leave.
+    /// A drive that goes half a millimetre to and fro behind an encoder of a tenth, with nothing missing: what its rounding leaves is expected, and white
+    /// noise of the same variance would leave far less.
     #[test]
     fn rounding_of_a_slow_motion_is_expected_as_it_is() {
         const STEP: f64 = 1e-4;
