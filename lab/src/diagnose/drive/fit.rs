@@ -22,6 +22,14 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Whether its inertia is one that is not believed, where that of `other` is: it is no law of the drive then. The force that it leaves is told in
+    /// parts of that inertia, so of a body that weighs next to nothing it is little, however badly its motion is followed.
+    #[must_use]
+    pub fn loses_inertia_of(&self, other: &Self) -> bool {
+        let is_believed = |fit: &Self| fit.model.has_believed_inertia(&fit.values);
+        is_believed(other) && !is_believed(self)
+    }
+
     /// ln of the likelihood of each scored row of `data`, but for a constant, under the noise as it stands.
     #[must_use]
     pub fn row_log_likelihoods(&self, data: &Data<'_>) -> Vec<f64> {

@@ -51,6 +51,16 @@ impl Search<'_> {
         }
     }
 
+    /// Whether term `at` of `best`, or its refinement, is worth having beside the others, of which `less` is the law, or does only an inertia without it
+    /// that is not believed.
+    fn is_needed(&self, best: &Fit, less: &Fit, at: usize) -> bool {
+        let is_worth = || {
+            let is_told = best.model.terms[at].is_told();
+            if is_told { self.is_worth(best, less) } else { belongs(&self.data, best, less) }
+        };
+        less.loses_inertia_of(best) || is_worth()
+    }
+
     /// `best` without the terms, or the refinements of a law, that are not worth having beside the others.
     #[must_use]
     pub fn pruned(&self, mut best: Fit) -> Fit {
@@ -58,8 +68,7 @@ impl Search<'_> {
             for at in (self.nominal.model.terms.len()..best.model.terms.len()).rev() {
                 for (model, values) in simpler(&best, at) {
                     let less = self.lessened(&best, model, values);
-                    let is_told = best.model.terms[at].is_told();
-                    if !(if is_told { self.is_worth(&best, &less) } else { belongs(&self.data, &best, &less) }) {
+                    if !self.is_needed(&best, &less, at) {
                         best = less;
                         continue 'again;
                     }
@@ -74,6 +83,7 @@ impl Search<'_> {
 mod tests {
     use super::super::law::Side;
     use super::super::levenberg_marquardt::Ended;
+    use super::super::model::index;
     use super::super::noise::Noise;
     use super::super::term::Term;
     use super::super::testing::{SCALES, TestDrive, TestLink, search_over};
@@ -134,5 +144,29 @@ mod tests {
             less.log_likelihood,
             search.nominal.log_likelihood
         );
+    }
+
+    /// Dry friction is all there is. A body of a fifth of the mass without it leaves next to no force, as that is told in parts of the mass, and
+    /// is a law of the drive no more than one of any force.
+    #[test]
+    fn a_term_stays_that_only_an_inertia_that_is_not_believed_does_without() {
+        let drive = TestDrive { coulomb: 0.4, ..TestDrive::PLAIN };
+        let trials = [drive.trial(4.0, 6)];
+        let search = search_over(&trials, &drive);
+        let start = Fit {
+            model: search.nominal.model.with(Term::Coulomb),
+            values: [search.nominal.values.as_slice(), &[0.3]].concat(),
+            ..search.nominal.clone()
+        };
+        let rubs = search.polished(&start);
+        let mut light = search.nominal.clone();
+        light.values[index::INERTIA] = light.model.ranges()[index::INERTIA].low;
+        light.noise.ln_disturbance = rubs.noise.ln_disturbance - 1.0;
+        light.log_likelihood = search.data.log_likelihood(&light.model, &light.values, &light.noise).0;
+        assert!(light.loses_inertia_of(&rubs) && light.log_likelihood < rubs.log_likelihood - 1000.0);
+        assert!(!search.is_worth(&rubs, &light) && search.is_needed(&rubs, &light, 0));
+        // Nor is a law of such an inertia any better with the term.
+        let both = Fit { values: light.values.iter().copied().chain([0.4]).collect(), ..rubs };
+        assert!(!light.loses_inertia_of(&both));
     }
 }

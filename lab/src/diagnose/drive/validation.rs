@@ -46,6 +46,7 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
                 && fit.model.has("sublinear_friction")
         };
         let needless = (0..without.len())
+            .filter(|nth| !without[*nth].0.loses_inertia_of(&fit))
             .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[told[*nth]]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.density.total_cmp(&without[*b].1.density)) {
             fit = without[nth].0.clone();
