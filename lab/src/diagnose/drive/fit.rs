@@ -2,7 +2,7 @@
 
 use super::levenberg_marquardt::{Ended, search_values};
 use super::likelihood::Data;
-use super::model::Model;
+use super::model::{Model, index};
 use super::noise::Noise;
 use super::noise_search::search_noise;
 
@@ -28,6 +28,14 @@ impl Fit {
     pub fn loses_inertia_of(&self, other: &Self) -> bool {
         let is_believed = |fit: &Self| fit.model.has_believed_inertia(&fit.values);
         is_believed(other) && !is_believed(self)
+    }
+
+    /// What the force that it leaves is multiplied by to be told beside that of `other`: where it loses that one's inertia for a smaller one, the
+    /// force that would move the believed body as much.
+    #[must_use]
+    pub fn force_beside(&self, other: &Self) -> f64 {
+        let inertia = |fit: &Self| fit.values[index::INERTIA];
+        if self.loses_inertia_of(other) { (inertia(other) / inertia(self)).max(1.0) } else { 1.0 }
     }
 
     /// ln of the likelihood of each scored row of `data`, but for a constant, under the noise as it stands.

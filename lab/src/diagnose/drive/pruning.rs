@@ -165,6 +165,12 @@ mod tests {
         light.log_likelihood = search.data.log_likelihood(&light.model, &light.values, &light.noise).0;
         assert!(light.loses_inertia_of(&rubs) && light.log_likelihood < rubs.log_likelihood - 1000.0);
         assert!(!search.is_worth(&rubs, &light) && search.is_needed(&rubs, &light, 0));
+        // Beside the believed body it would leave as much more force; a heavier one leaves what it leaves.
+        let inertia = |fit: &Fit| fit.values[index::INERTIA];
+        assert!((light.force_beside(&rubs) * inertia(&light) / inertia(&rubs) - 1.0).abs() < 1e-12);
+        let mut heavy = light.clone();
+        heavy.values[index::INERTIA] = heavy.model.ranges()[index::INERTIA].high;
+        assert!(heavy.loses_inertia_of(&rubs) && heavy.force_beside(&rubs) == 1.0 && rubs.force_beside(&light) == 1.0);
         // Nor is a law of such an inertia any better with the term.
         let both = Fit { values: light.values.iter().copied().chain([0.4]).collect(), ..rubs };
         assert!(!light.loses_inertia_of(&both));

@@ -65,11 +65,16 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
             fit = without[nth].0.clone();
             continue;
         }
-        let named = without.iter().zip(&comparisons).enumerate().map(|(nth, ((_, left), ratio))| NamedTerm {
-            at: told[nth],
-            held_out_share: share(left).clamp(0.0, 1.0),
-            p_value: (COMPARISONS * ratio.p_value()).min(1.0).shown(),
-            without: rms(&left.missing),
+        let named = without.iter().zip(&comparisons).enumerate().map(|(nth, ((less, left), ratio))| {
+            let beside = less.force_beside(&fit);
+            let left_of_believed = beside.powi(2) * left.density;
+            let share = share_taken(left_of_believed, held.density, search.effort_noise_density);
+            NamedTerm {
+                at: told[nth],
+                held_out_share: share.clamp(0.0, 1.0),
+                p_value: (COMPARISONS * ratio.p_value()).min(1.0).shown(),
+                without: beside * rms(&left.missing),
+            }
         });
         let named = named.collect();
         return Validated { fit, held_out: held, named, uncertainty };
