@@ -42,12 +42,6 @@ pub fn expected_noise(data: &Data<'_>, fit: &Fit, common: &Noise, step: f64, see
     white.max((rounded.iter().sum::<f64>() / BEGINNINGS as f64).sqrt())
 }
 
-/// Each row's position as `law` predicts it from the rows before, which knows it to less than a step of a coarse encoder.
-fn predicted_path(trial: &DriveTrial, law: &DriveLaw, noise: &Noise) -> Vec<f64> {
-    let pass = innovations(trial, law, noise, false);
-    trial.position.iter().zip(&pass.innovation).map(|(measured, innovation)| measured - innovation).collect()
-}
-
 /// The same of white noise in the recorded effort, which may be its sensor's: what is left below it is not told as physics. Where a
 /// controller commands such noise it moves the drive and nothing of it is left; so it is no part of the expected noise.
 #[must_use]
@@ -61,6 +55,12 @@ pub fn effort_noise(data: &Data<'_>, fit: &Fit, common: &Noise, seed: u64) -> f6
         noise.force = None;
         as_denoised(trial, noise)
     })
+}
+
+/// Each row's position as `law` predicts it from the rows before, which knows it to less than a step of a coarse encoder.
+fn predicted_path(trial: &DriveTrial, law: &DriveLaw, noise: &Noise) -> Vec<f64> {
+    let pass = innovations(trial, law, noise, false);
+    trial.position.iter().zip(&pass.innovation).map(|(measured, innovation)| measured - innovation).collect()
 }
 
 /// Variance of the noise that was taken out of effort (0) or force (1); zero where none was: then what is recorded has all of it.

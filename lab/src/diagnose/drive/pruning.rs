@@ -86,7 +86,7 @@ mod tests {
     use super::super::model::index;
     use super::super::noise::Noise;
     use super::super::term::Term;
-    use super::super::testing::{SCALES, TestDrive, TestLink, search_over};
+    use super::super::testing::{SCALES, TestDrive, TestLink, search_over, with_dry_friction};
     use super::*;
 
     /// Dry friction with a ripple along the way: alone it looks larger when creeping, beside the ripple it does not.
@@ -153,12 +153,7 @@ mod tests {
         let drive = TestDrive { coulomb: 0.4, ..TestDrive::PLAIN };
         let trials = [drive.trial(4.0, 6)];
         let search = search_over(&trials, &drive);
-        let start = Fit {
-            model: search.nominal.model.with(Term::Coulomb),
-            values: [search.nominal.values.as_slice(), &[0.3]].concat(),
-            ..search.nominal.clone()
-        };
-        let rubs = search.polished(&start);
+        let rubs = with_dry_friction(&search);
         let mut light = search.nominal.clone();
         light.values[index::INERTIA] = light.model.ranges()[index::INERTIA].low;
         light.noise.ln_disturbance = rubs.noise.ln_disturbance - 1.0;

@@ -227,7 +227,7 @@ mod tests {
     use super::super::levenberg_marquardt::Ended;
     use super::super::model::Model;
     use super::super::noise::Noise;
-    use super::super::testing::{SCALES, TestDrive, search_over};
+    use super::super::testing::{SCALES, TestDrive, search_over, with_dry_friction};
     use super::*;
 
     #[test]
@@ -254,12 +254,7 @@ mod tests {
         let drive = TestDrive { coulomb: 0.4, ..TestDrive::PLAIN };
         let trials = [drive.trial(4.0, 6)];
         let search = search_over(&trials, &drive);
-        let start = Fit {
-            model: search.nominal.model.with(Term::Coulomb),
-            values: [search.nominal.values.as_slice(), &[0.3]].concat(),
-            ..search.nominal.clone()
-        };
-        let right = search.polished(&start);
+        let right = with_dry_friction(&search);
         let mut wrong = right.clone();
         wrong.values[index::INERTIA] *= 0.5;
         wrong.log_likelihood = search.data.log_likelihood(&wrong.model, &wrong.values, &wrong.noise).0;

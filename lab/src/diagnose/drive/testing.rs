@@ -247,3 +247,13 @@ pub fn search_over<'a>(trials: &'a [DriveTrial], drive: &TestDrive) -> Search<'a
     let (sides, is_asked, effort_noise_density) = (Vec::new(), false, 0.0);
     Search { data, scales: SCALES, nominal, band_hz: 20.0, sides, is_asked, effort_noise_density }
 }
+
+/// The nominal law of `search` with dry friction beside it, fitted in full.
+#[must_use]
+pub fn with_dry_friction(search: &Search<'_>) -> Fit {
+    search.polished(&Fit {
+        model: search.nominal.model.with(Term::Coulomb),
+        values: [search.nominal.values.as_slice(), &[0.3]].concat(),
+        ..search.nominal.clone()
+    })
+}

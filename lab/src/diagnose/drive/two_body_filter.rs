@@ -139,25 +139,15 @@ struct Pairs {
     all: Vec<Pair>,
     /// Place of each by its step, in grains.
     places: HashMap<i64, usize>,
-    /// The latest of them: of a steady clock all are alike.
-    latest: Option<(i64, usize)>,
 }
 
 impl Pairs {
     /// Place of the one over `step`, to a `grain`; a `new` one where there is none yet.
     fn of(&mut self, step: f64, grain: f64, new: impl FnOnce() -> Pair) -> usize {
-        let grains = (step / grain).round() as i64;
-        if let Some((latest, at)) = self.latest
-            && latest == grains
-        {
-            return at;
-        }
-        let at = *self.places.entry(grains).or_insert_with(|| {
+        *self.places.entry((step / grain).round() as i64).or_insert_with(|| {
             self.all.push(new());
             self.all.len() - 1
-        });
-        self.latest = Some((grains, at));
-        at
+        })
     }
 }
 

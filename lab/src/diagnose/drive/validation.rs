@@ -39,7 +39,10 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
                 (less, left)
             })
             .collect();
-        let share = |left: &HeldOut| share_taken(left.density, held.density, search.effort_noise_density);
+        let share = |(less, left): &(Fit, HeldOut)| {
+            let left = less.force_beside(&fit).powi(2) * left.density;
+            share_taken(left, held.density, search.effort_noise_density)
+        };
         // Sub-linear friction is what dry friction leaves: the latter cannot go before it.
         let carries = |term: &Term| {
             matches!(term, Term::Coulomb | Term::AsymmetricCoulomb | Term::Stribeck)
@@ -47,7 +50,7 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
         };
         let needless = (0..without.len())
             .filter(|nth| !without[*nth].0.loses_inertia_of(&fit))
-            .filter(|nth| share(&without[*nth].1) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[told[*nth]]));
+            .filter(|nth| share(&without[*nth]) < LEAST_HELD_OUT_SHARE && !carries(&fit.model.terms[told[*nth]]));
         if let Some(nth) = needless.min_by(|a, b| without[*a].1.density.total_cmp(&without[*b].1.density)) {
             fit = without[nth].0.clone();
             continue;
@@ -65,16 +68,11 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
             fit = without[nth].0.clone();
             continue;
         }
-        let named = without.iter().zip(&comparisons).enumerate().map(|(nth, ((less, left), ratio))| {
-            let beside = less.force_beside(&fit);
-            let left_of_believed = beside.powi(2) * left.density;
-            let share = share_taken(left_of_believed, held.density, search.effort_noise_density);
-            NamedTerm {
-                at: told[nth],
-                held_out_share: share.clamp(0.0, 1.0),
-                p_value: (COMPARISONS * ratio.p_value()).min(1.0).shown(),
-                without: beside * rms(&left.missing),
-            }
+        let named = without.iter().zip(&comparisons).enumerate().map(|(nth, (without, ratio))| NamedTerm {
+            at: told[nth],
+            held_out_share: share(without).clamp(0.0, 1.0),
+            p_value: (COMPARISONS * ratio.p_value()).min(1.0).shown(),
+            without: without.0.force_beside(&fit) * rms(&without.1.missing),
         });
         let named = named.collect();
         return Validated { fit, held_out: held, named, uncertainty };
