@@ -8,11 +8,14 @@ use crate::diagnose::drive::input::Inputs;
 use crate::diagnose::drive::law::DriveLaw;
 use crate::diagnose::drive::missing_force::missing_force;
 use crate::diagnose::drive::model::index;
+use crate::diagnose::drive::named::NamedEffect;
 use crate::diagnose::drive::outcome::Outcome;
 use crate::rig::Coordinate;
 
 /// Effects that show over the position; all others are drawn over the speed.
-const BY_POSITION: [&str; 2] = ["gravity_load", "cogging"];
+const BY_POSITION: [&str; 2] = [GRAVITY_LOAD, COGGING];
+const GRAVITY_LOAD: &str = "gravity_load";
+const COGGING: &str = "cogging";
 
 // What is missing pushes like an effort: a law that misses some asks for less effort than was measured, or, of friction, whose force is
 // against the motion, for more. The effort that a law gives for the motion is what was measured and what it misses together.
@@ -63,14 +66,16 @@ pub(super) fn friction(
         None => (0, [0.0, outcome.trials.first()?.duration_s()]),
     };
     let trial = outcome.trials.get(number)?;
-    let by_position = first_effect.is_some_and(|name| BY_POSITION.contains(&name));
+    let effects = found(outcome);
+    let drawn = drawn(first_effect, &effects);
+    let by_position = drawn.is_some_and(|name| BY_POSITION.contains(&name));
     let velocities: Vec<f64> = (0..trial.len()).map(|row| velocity(trial, row)).collect();
     let beside_inertia = beside_inertia(outcome, number);
     let [given, refitted, improved] = [0, 1, 2].map(|of| &outcome.missing[of][number]);
     let measured = |row: usize| beside_inertia[row];
     let state: Vec<f32> = if by_position { &trial.position } else { &velocities }.iter().map(|x| *x as f32).collect();
     let first = trial.time.partition_point(|time| time - trial.time[0] < stretch_s[0]);
-    let rows = match ripple_pitch(outcome).filter(|_| first_effect == Some("cogging")) {
+    let rows = match ripple_pitch(&effects).filter(|_| drawn == Some(COGGING)) {
         Some(pitch) => a_few_pitches(&trial.position, first, pitch),
         None => traversals::limited(&state, 0..trial.len(), first),
     };
@@ -97,9 +102,16 @@ pub(super) fn friction(
 /// Pitches of a ripple that a picture can show.
 const MOST_PITCHES: f64 = 6.0;
 
-/// The pitch of the cogging that the answer names.
-fn ripple_pitch(outcome: &Outcome) -> Option<f64> {
-    let cogging = found(outcome).into_iter().find(|effect| effect.name() == "cogging")?;
+/// The effect that the picture is of: the first that the answer names. A constant load is as large everywhere, and gives way to a ripple beside it.
+fn drawn<'a>(first: Option<&'a str>, effects: &[NamedEffect]) -> Option<&'a str> {
+    let of = |name: &str| effects.iter().find(|effect| effect.name() == name);
+    let is_constant = first == Some(GRAVITY_LOAD) && of(GRAVITY_LOAD).is_some_and(|load| load.values.len() == 1);
+    if is_constant && of(COGGING).is_some() { Some(COGGING) } else { first }
+}
+
+/// The pitch of the cogging among `effects`.
+fn ripple_pitch(effects: &[NamedEffect]) -> Option<f64> {
+    let cogging = effects.iter().find(|effect| effect.name() == COGGING)?;
     let names = cogging.effect.spec().forms[cogging.form].parameters.iter().map(|parameter| parameter.name);
     names.zip(&cogging.values).find(|(name, _)| *name == "pitch").map(|(_, pitch)| pitch.abs())
 }
@@ -133,6 +145,23 @@ fn beside_inertia(outcome: &Outcome, trial: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_constant_load_gives_the_picture_to_a_ripple_beside_it_and_a_weight_that_turns_keeps_it() {
+        let effect = |name: &str, form: usize, values: usize| NamedEffect {
+            effect: crate::effects::find(name).unwrap(),
+            form,
+            values: vec![1.0; values],
+            intervals: vec![[0.5, 1.5]; values],
+        };
+        let constant = || effect(GRAVITY_LOAD, 0, 1);
+        let by_angle = || effect(GRAVITY_LOAD, 1, 3);
+        let ripple = || effect(COGGING, 0, 3);
+        assert_eq!(drawn(Some(GRAVITY_LOAD), &[constant(), ripple()]), Some(COGGING));
+        assert_eq!(drawn(Some(GRAVITY_LOAD), &[by_angle(), ripple()]), Some(GRAVITY_LOAD));
+        assert_eq!(drawn(Some(GRAVITY_LOAD), &[constant()]), Some(GRAVITY_LOAD));
+        assert_eq!(drawn(Some("coulomb_friction"), &[constant(), ripple()]), Some("coulomb_friction"));
+    }
 
     #[test]
     fn a_ripple_is_drawn_over_a_few_of_its_pitches() {
