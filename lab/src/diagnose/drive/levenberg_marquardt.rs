@@ -36,17 +36,21 @@ pub fn search_values(data: &Data<'_>, model: &Model, values: &mut Vec<f64>, nois
     values.iter_mut().zip(&ranges).for_each(|(value, range)| *value = value.clamp(range.low, range.high));
     let all: Vec<usize> = (0..values.len()).collect();
     let mut damping = 1e-3;
+    // Innovations at the values, of two bodies those of the step before; of one body they are taken with gains, which each step computes anew.
+    let mut known = None;
     for _ in 0..steps {
-        let here = Linearisation::of(data, model, values, noise);
+        let here = Linearisation::with_base(data, model, values, noise, known.take());
         let before = data.profiled(&here.base, noise).0 + model.ln_prior(values);
         let columns = here.columns(values, &all);
         let normal = Normal::of(&columns, &here.innovations).with_priors(values, &ranges);
         let mut gained = None;
         for _ in 0..DAMPING_TRIES {
             let moved = normal.step(values, &ranges, damping);
-            let after = data.profiled(&here.passes(&moved), noise).0 + model.ln_prior(&moved);
+            let passes = here.passes(&moved);
+            let after = data.profiled(&passes, noise).0 + model.ln_prior(&moved);
             if after > before {
                 *values = moved;
+                known = model.has_link().then_some(passes);
                 damping = (damping * DAMPING_LOWERED).max(1e-9);
                 gained = Some(after - before);
                 break;

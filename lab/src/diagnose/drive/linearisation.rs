@@ -34,6 +34,18 @@ impl<'a> Linearisation<'a> {
     /// Those of `model` about `values`.
     #[must_use]
     pub fn of(data: &'a Data<'a>, model: &'a Model, values: &[f64], noise: &'a Noise) -> Self {
+        Self::with_base(data, model, values, noise, None)
+    }
+
+    /// The same where the innovations at the values are those `known` ones, if any.
+    #[must_use]
+    pub fn with_base(
+        data: &'a Data<'a>,
+        model: &'a Model,
+        values: &[f64],
+        noise: &'a Noise,
+        known: Option<Vec<Innovations>>,
+    ) -> Self {
         let law = model.law(values);
         let gains = law.link.is_none().then(|| data.trials.par_iter().map(|t| Gains::of(t, &law, noise)).collect());
         let inputs = Inputs::of_all(data.trials, &law);
@@ -48,7 +60,7 @@ impl<'a> Linearisation<'a> {
             base: Vec::new(),
             innovations: Vec::new(),
         };
-        at.base = at.passes(values);
+        at.base = known.unwrap_or_else(|| at.passes(values));
         at.innovations = data.standardised(&at.base, &at.base);
         at
     }

@@ -139,15 +139,22 @@ struct Pairs {
     all: Vec<Pair>,
     /// Place of each by its step, in grains.
     places: HashMap<i64, usize>,
+    /// Step and place of the latest: a clock that does not jitter asks for the same in every row.
+    latest: (i64, usize),
 }
 
 impl Pairs {
     /// Place of the one over `step`, to a `grain`; a `new` one where there is none yet.
     fn of(&mut self, step: f64, grain: f64, new: impl FnOnce() -> Pair) -> usize {
-        *self.places.entry((step / grain).round() as i64).or_insert_with(|| {
-            self.all.push(new());
-            self.all.len() - 1
-        })
+        let grains = (step / grain).round() as i64;
+        if self.latest.0 != grains || self.all.is_empty() {
+            let place = *self.places.entry(grains).or_insert_with(|| {
+                self.all.push(new());
+                self.all.len() - 1
+            });
+            self.latest = (grains, place);
+        }
+        self.latest.1
     }
 }
 
