@@ -1,7 +1,7 @@
 //! The golden section: the least value of a function with one valley, each step at the cost of one evaluation.
 
 /// Part of an interval that a step leaves out: `(3 - sqrt 5) / 2`.
-const LEFT_OUT: f64 = 0.381_966;
+pub const LEFT_OUT: f64 = 0.381_966;
 
 /// Where `cost` is least between `low` and `high`, to `precision` (J. Kiefer, Proc. Amer. Math. Soc. 4 (1953) 502). The middle where
 /// the two are nearer than that; with several valleys, one of them.

@@ -4,14 +4,12 @@ use super::input::Inputs;
 use super::likelihood::Data;
 use super::model::Model;
 use super::noise::Noise;
+use crate::diagnose::golden_section::LEFT_OUT;
 
 /// Half the distance, in ln of the density, within which its likeliest value is looked for at first, and by how much further where it is not there.
 const FIRST_SPAN: f64 = 3.0;
 const WIDER: f64 = 4.0;
 const MOST_WIDENINGS: usize = 8;
-
-/// Part of the wider side that a step takes: (3 - sqrt 5) / 2.
-const GOLDEN: f64 = 0.381_966;
 
 /// Distance of the ends between which the likeliest value is known to lie, and the steps after which it counts as known in any case.
 const CLOSE: f64 = 0.08;
@@ -76,7 +74,7 @@ impl Peak {
                 break;
             }
             let is_above = high - middle > middle - low;
-            let next = of(middle + GOLDEN * if is_above { high - middle } else { low - middle });
+            let next = of(middle + LEFT_OUT * if is_above { high - middle } else { low - middle });
             match (next.log_likelihood > self.middle.log_likelihood, is_above) {
                 (true, true) => (self.low, self.middle) = (self.middle, next),
                 (true, false) => (self.high, self.middle) = (self.middle, next),
