@@ -8,6 +8,7 @@ pub mod acting_force;
 pub mod bound;
 pub mod channels;
 pub mod check;
+pub mod clipped_force;
 pub mod command;
 pub mod contact;
 pub mod drive;

@@ -132,7 +132,7 @@ pub fn deviations_of_law(contact: &Outcome, trials: &[Recording]) -> Vec<Vec<Vec
         let each = predicted(&values).into_iter().zip(&at).zip(&contact.trials).zip(trials);
         each.map(|(((after, before), looked_at), trial)| {
             let change: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
-            interpolated(&looked_at.time, &change, &clock(&trial.time, looked_at))
+            on_clock(&trial.time, &change, looked_at)
         })
         .collect()
     };
@@ -144,8 +144,13 @@ pub fn deviations_of_law(contact: &Outcome, trials: &[Recording]) -> Vec<Vec<Vec
 /// Takes `added` off `force`, whose rows are at `time`: a value for each row that the contact was looked at in. Means of rows begin after
 /// the first row and end before the last.
 fn take_off(force: &mut [f64], time: &[f64], added: &[f64], looked_at: &ContactTrial) {
-    let added = interpolated(&looked_at.time, added, &clock(time, looked_at));
-    force.iter_mut().zip(added).for_each(|(force, added)| *force -= added);
+    force.iter_mut().zip(on_clock(time, added, looked_at)).for_each(|(force, added)| *force -= added);
+}
+
+/// `values` of the rows that the contact was looked at in, at each of the recorded rows, whose instants are `time`.
+#[must_use]
+pub fn on_clock(time: &[f64], values: &[f64], looked_at: &ContactTrial) -> Vec<f64> {
+    interpolated(&looked_at.time, values, &clock(time, looked_at))
 }
 
 /// The recorded rows at `time` on the clock of the rows that the contact was looked at in, no earlier than their first and no later than

@@ -4,6 +4,7 @@ use anyhow::Result;
 
 use super::acting_force::{CARRIED_BY_THE_DRIVE, LawForce, as_it_acted, by_the_law, deviations_of_law, sensor_effects};
 use super::check::Finding;
+use super::clipped_force::{Spans, clipped_spans};
 use super::contact;
 use super::contact::circumstances::Circumstances;
 use super::drive;
@@ -84,13 +85,14 @@ impl Recorded<'_> {
             let acted = contact.as_ref().map(|contact| as_it_acted(contact, self.trials));
             let acted = acted.as_deref().unwrap_or(self.trials);
             let by_the_law = contact.as_ref().and_then(|contact| by_the_law(contact, acted));
-            let by_the_law = self.felt(acted, by_the_law)?;
-            let mut drive = self.drive(by_the_law.as_ref().map_or(acted, |law| &law.trials))?;
+            let clipped = contact.as_ref().map(|contact| clipped_spans(contact, self.trials)).unwrap_or_default();
+            let by_the_law = self.felt(acted, by_the_law, &clipped)?;
+            let mut drive = self.drive(by_the_law.as_ref().map_or(acted, |law| &law.trials), &clipped)?;
             if let (Some(contact), Some(drive), Some(law)) = (&contact, &mut drive, &by_the_law) {
                 widen(drive, &deviations_of_law(contact, &law.trials));
             }
             let channels = Channels { contact, drive, refuted: refuted.clone() };
-            let mut anew = self.refuted_by_the_drive(&channels, acted)?;
+            let mut anew = self.refuted_by_the_drive(&channels, acted, &clipped)?;
             anew.retain(|name| !refuted.contains(name));
             if anew.is_empty() {
                 break channels;
@@ -110,33 +112,41 @@ impl Recorded<'_> {
     }
 
     /// Effects of the force sensor that the contact names and the drive speaks against: with the force as it was shown nothing is missing
-    /// in the drive, and with what they make of it, `acted`, something is. That two errors cancel each other is not believed.
-    fn refuted_by_the_drive(&self, channels: &Channels, acted: &[Recording]) -> Result<Vec<&'static str>> {
+    /// in the drive, and with what they make of it, `acted`, something is. That two errors cancel each other is not believed. Where the drive was not
+    /// looked at because the force was `clipped`, it is here.
+    fn refuted_by_the_drive(
+        &self,
+        channels: &Channels,
+        acted: &[Recording],
+        clipped: &[Spans],
+    ) -> Result<Vec<&'static str>> {
         let sensors = channels.contact.as_ref().map(sensor_effects).unwrap_or_default();
-        if sensors.is_empty() || is_complete(channels.drive.as_ref()) || channels.drive.is_none() {
+        let is_explained = is_complete(channels.drive.as_ref()) && clipped.iter().all(Vec::is_empty);
+        if sensors.is_empty() || is_explained || channels.drive.is_none() {
             return Ok(Vec::new());
         }
         // A search takes long: it is asked where the nominal law fits better already.
         let likelihood = |standing: Option<NominalStanding>| standing.map(|standing| standing.log_likelihood);
-        if likelihood(self.standing(self.trials)?) <= likelihood(self.standing(acted)?) {
+        if likelihood(self.standing(self.trials, &[])?) <= likelihood(self.standing(acted, &[])?) {
             return Ok(Vec::new());
         }
-        let as_shown = self.drive(self.trials)?;
+        let as_shown = self.drive(self.trials, &[])?;
         Ok(if is_complete(as_shown.as_ref()) { sensors } else { Vec::new() })
     }
 
     /// The force `by_the_law` of the contact where the drive is looked for in that: where its refitted nominal law is likelier under it than with
     /// the force as it `acted`, and where that force's own error is less than any term of the drive is told for.
-    fn felt(&self, acted: &[Recording], by_the_law: Option<LawForce>) -> Result<Option<LawForce>> {
+    fn felt(&self, acted: &[Recording], by_the_law: Option<LawForce>, clipped: &[Spans]) -> Result<Option<LawForce>> {
         let Some(law) = by_the_law else { return Ok(None) };
-        let (Some(first), Some(other)) = (self.standing(acted)?, self.standing(&law.trials)?) else { return Ok(None) };
+        let [first, other] = [acted, &law.trials].map(|trials| self.standing(trials, clipped));
+        let (Some(first), Some(other)) = (first?, other?) else { return Ok(None) };
         let is_known = law.error < LEAST_PART_OF_ALL.value() * other.unexplained;
         Ok((is_known && other.log_likelihood > first.log_likelihood).then_some(law))
     }
 
     /// How the drive's refitted nominal law stands before `trials`; `None` where they show no motion of a drive.
-    fn standing(&self, trials: &[Recording]) -> Result<Option<NominalStanding>> {
-        Ok(self.prepared(trials)?.and_then(|(trials, nominal)| nominal_standing(&trials, &nominal)))
+    fn standing(&self, trials: &[Recording], clipped: &[Spans]) -> Result<Option<NominalStanding>> {
+        Ok(self.prepared(trials, clipped)?.and_then(|(trials, nominal)| nominal_standing(&trials, &nominal)))
     }
 
     /// The contact, by force and position alone; `sensors` is what the drive found of the force sensor.
@@ -150,19 +160,24 @@ impl Recorded<'_> {
         Ok(contact::outcome::identify(fine, &coarse, &nominal, circumstances, self.say))
     }
 
-    /// The drive in `trials`.
-    fn drive(&self, trials: &[Recording]) -> Result<Option<drive::outcome::Outcome>> {
-        let prepared = self.prepared(trials)?;
+    /// The drive in `trials`, where their force is not `clipped`.
+    fn drive(&self, trials: &[Recording], clipped: &[Spans]) -> Result<Option<drive::outcome::Outcome>> {
+        let prepared = self.prepared(trials, clipped)?;
         Ok(prepared
             .and_then(|(trials, nominal)| drive::identification::identify(trials, &nominal, self.seed, self.say)))
     }
 
-    /// `trials` as the drive's model sees them, and what the rig says of it; effects that it already holds are nominal.
-    fn prepared(&self, trials: &[Recording]) -> Result<Option<(Vec<DriveTrial>, NominalDrive)>> {
+    /// `trials` as the drive's model sees them, without the rows in which their force is `clipped`, and what the rig says of it; effects that it already
+    /// holds are nominal.
+    fn prepared(&self, trials: &[Recording], clipped: &[Spans]) -> Result<Option<(Vec<DriveTrial>, NominalDrive)>> {
         let known = effects::resolve_all(self.rig, self.origin)?;
         let is_recorded = drive::prepare::is_recorded(self.rig, trials);
         let nominal = drive::prepare::nominal(self.rig, trials, known).filter(|_| is_recorded);
-        Ok(nominal.map(|nominal| (drive::prepare::trials(self.rig, trials), nominal)))
+        let mut seen = drive::prepare::trials(self.rig, trials);
+        for (trial, spans) in seen.iter_mut().zip(clipped).filter(|(_, spans)| !spans.is_empty()) {
+            *trial = trial.without(spans);
+        }
+        Ok(nominal.map(|nominal| (seen, nominal)))
     }
 }
 
@@ -197,7 +212,47 @@ fn is_told(contact: &contact::outcome::Outcome, name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::with_kin;
+    use super::{Recorded, with_kin};
+    use crate::recording::Recording;
+    use crate::rig::Rig;
+
+    /// A drive that is held on a contact of which the sensor shows half: what it did meanwhile is not looked at, and what it did before and behind is.
+    #[test]
+    fn a_drive_is_looked_at_where_its_force_is_shown() {
+        let text = "[rig]\nname = \"a rig\"\ncoordinate = \"linear\"\n[drive]\nmass_kg = 0.8\nviscous_n_s_m = 4.0\n\
+                    [contact]\nmodel = \"kelvin_voigt\"\nsurface_m = 0.0\nstiffness_n_m = 300.0\ndamping_n_s_m = 2.0\n";
+        let rig = Rig::parse(text, "rig.toml").unwrap();
+        let time: Vec<f64> = (0..3000).map(|row| f64::from(row) * 1e-3).collect();
+        let position: Vec<f64> = time.iter().map(|t| 1e-2 * (3.0 * t).sin()).collect();
+        let trial = Recording {
+            name: "one.csv".to_owned(),
+            force: Some(position.iter().map(|x| (300.0 * x).max(0.0)).collect()),
+            effort: Some(vec![1.0; time.len()]),
+            velocity: None,
+            reference: None,
+            load: None,
+            time,
+            position,
+        };
+        let trials = [trial];
+        let figures = [crate::sensors::Figures::of(&rig, &trials[0])];
+        let recorded = Recorded {
+            rig: &rig,
+            origin: "rig.toml",
+            trials: &trials,
+            figures: &figures,
+            is_one_speed: false,
+            seed: 1,
+            say: &|_| {},
+        };
+        let rows = |clipped: &[Vec<[f64; 2]>]| {
+            let (mut seen, _) = recorded.prepared(&trials, clipped).unwrap().expect("a drive");
+            let seen = seen.remove(0);
+            (seen.len(), seen.time.iter().filter(|time| (0.9995..2.0005).contains(*time)).count())
+        };
+        assert_eq!(rows(&[]), (3000, 1001));
+        assert_eq!(rows(&[vec![[1.0, 2.0]]]), (1999, 0));
+    }
 
     /// A zero that is felt as a force is felt where it wanders, too; a wrong factor is another matter.
     #[test]

@@ -56,6 +56,21 @@ fn a_force_that_fades() {
     finds(&Case::led(BENCH, FADES), "stress_relaxation", &expected);
 }
 
+/// Each touch meets what was not pressed before, as another spot would be, where a body that stays has not come back between two touches.
+#[test]
+fn a_force_that_fades_anew_with_each_touch() {
+    let branch = "branch_stiffness_n_m = 60.0\nrelaxation_time_s = 1.5\n";
+    let anew = format!("[[effect]]\nname = \"stress_relaxation\"\nform = \"one_branch_anew\"\n{branch}");
+    let answer = Case::led(BENCH, &anew).diagnose(&[]);
+    found(&answer, "stress_relaxation", &[("branch_stiffness", 60.0), ("relaxation_time", 1.5)]);
+    let equation = answer["physics"][0]["equation"].as_str().unwrap();
+    assert!(equation.ends_with("z = 0 before each touch"), "{equation}");
+    let stays = Case::led(BENCH, &anew.replace("_anew", "")).diagnose(&[]);
+    found(&stays, "stress_relaxation", &[("branch_stiffness", 60.0), ("relaxation_time", 1.5)]);
+    let equation = stays["physics"][0]["equation"].as_str().unwrap();
+    assert!(!equation.contains("touch"), "{equation}");
+}
+
 #[test]
 fn damping_that_grows_with_depth() {
     let case = Case::led(BENCH, "[[effect]]\nname = \"hunt_crossley_damping\"\nalpha_n_s_m2 = 600\n");

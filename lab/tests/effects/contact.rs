@@ -149,6 +149,40 @@ fn a_maxwell_branch_relaxes_as_its_closed_form() {
     close(extra(2300) / extra(1500), (-0.8f64 / time).exp(), 1e-6, "what is left 0.8 s later");
 }
 
+/// A branch that begins anew holds in the second touch what that touch alone has strained; one that stays holds what the first has left as well.
+#[test]
+fn a_branch_that_begins_anew_forgets_the_last_touch() {
+    let (branch, time) = (150.0, 1.5);
+    let table = |form: &str| {
+        format!(
+            "[[effect]]\nname = \"stress_relaxation\"\nform = \"{form}\"\nbranch_stiffness_n_m = {branch}\nrelaxation_time_s = {time}\n"
+        )
+    };
+    let [anew, stays] = ["one_branch_anew", "one_branch"].map(|form| run(&with(&rig(REFERENCE, false), &table(form))));
+    let fine = 1e-5;
+    let held = |from: f64, end: f64| -> f64 {
+        let instants = ((from / fine) as usize..(end / fine) as usize).map(|at| (at as f64 + 0.5) * fine);
+        let strained = instants.map(|s| (REFERENCE.at(s), s)).filter(|((x, _), _)| *x > 0.0);
+        strained.map(|((_, v), s)| branch * v * (-(end - s) / time).exp() * fine).sum()
+    };
+    let mut apart = 0.0f64;
+    for (row, x, v) in inside(&rig(REFERENCE, false)).filter(|(row, ..)| *row > 2000 && row % 50 == 0) {
+        // Where nothing pushes the force is cut, and the branch is not seen.
+        if force(&anew)[row].min(force(&stays)[row]) <= 0.0 {
+            continue;
+        }
+        let [anew, stays] = [&anew, &stays].map(|run| force(run)[row] - STIFFNESS * x - DAMPING * v);
+        let end = row as f64 / RATE;
+        // A step is straight: half a row of the fastest motion, and the touch begins within one.
+        let tolerance = 2e-3 * branch * 10e-3;
+        let begun = (0..row).rev().find(|before| REFERENCE.at(*before as f64 / RATE).0 <= 0.0).unwrap_or(0);
+        close(anew, held(begun as f64 / RATE, end), tolerance, "anew");
+        close(stays, held(0.0, end), tolerance, "stays");
+        apart = apart.max((anew - stays).abs());
+    }
+    assert!(apart > 0.1, "{apart} N");
+}
+
 /// On a straight spring a memory of the force is the memory of the depth, whatever its law of time.
 #[test]
 fn a_memory_that_multiplies_a_straight_spring_is_the_one_beside_it() {

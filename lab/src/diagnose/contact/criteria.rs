@@ -91,6 +91,12 @@ thresholds! { "contact";
     HEIGHT_PART = 0.5, "1", chosen;
     /// Share of a wave's variance that place and direction of the tool have from which the wave is not told from a law of the motion: half.
     LARGEST_SHARE_IN_STEP = 0.5, "1", derived;
+    /// Size of a wave of the surface over that of the tool's own line of its frequency, below which it is not told from a law that is wrong there: the force
+    /// of a spring that is stiffer or later by that part at one frequency is the same. Chosen: a bush in which a loop is all that is missing has waves of 0.04
+    /// and 0.03, and a tool that is held softly goes with a surface by less than all of it.
+    LEAST_PART_OF_OWN_WAVE = 0.25, "1", chosen;
+    /// Size of a line of the tool's motion over that of what lies beside it, in root mean square: of noise one in e^9, 8000, is larger.
+    OWN_LINE = 3.0, "1", derived;
     /// Part by which a line of the spectrum may be off the frequency that it is known by: that of the mains.
     LINE_TOLERANCE = MAINS_TOLERANCE, "1", cited;
 }

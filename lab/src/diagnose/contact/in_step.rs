@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::{Matrix2, Matrix4, RowVector4, Vector4};
 
-use super::criteria::LARGEST_SHARE_IN_STEP;
+use super::criteria::{LARGEST_SHARE_IN_STEP, LEAST_PART_OF_OWN_WAVE, OWN_LINE};
 use super::data::Data;
 use super::fit::Fit;
 use super::trial::ContactTrial;
@@ -34,6 +34,50 @@ pub fn is_in_step(data: &Data<'_>, fit: &Fit, frequency: f64) -> bool {
     });
     let (rows, share) = shares.fold((0.0, 0.0), |(rows, sum), (own, share)| (rows + own, sum + own * share));
     share > LARGEST_SHARE_IN_STEP * rows
+}
+
+/// Lines of the spectrum beside one that are looked at with it, past the window's own width of two.
+const BESIDE: [f64; 4] = [-4.0, -3.0, 3.0, 4.0];
+
+/// Whether `fit` has a surface that moves as a line of the tool's own motion does, by less than [`LEAST_PART_OF_OWN_WAVE`] of it: that is a law of the motion
+/// which is wrong at that frequency.
+#[must_use]
+pub fn is_of_the_tool(data: &Data<'_>, fit: &Fit) -> bool {
+    let terms = fit.model.terms.iter().enumerate().filter(|(_, term)| term.name() == "surface_motion");
+    terms.into_iter().any(|(at, term)| {
+        let Some(named) = term.parameters().iter().position(|parameter| parameter.name == "frequency") else {
+            return false;
+        };
+        let all = &fit.values[fit.model.first_value_of(at)..];
+        let (mut wave, mut own, mut beside) = (0.0, 0.0, 0.0);
+        for (number, trial) in data.trials.iter().enumerate() {
+            let values = term.in_trial(all, number);
+            let duration = trial.duration_s().max(f64::MIN_POSITIVE);
+            wave +=
+                values.iter().enumerate().filter(|(nth, _)| *nth != named).map(|(_, value)| value * value).sum::<f64>();
+            own += line_power(trial, values[named]);
+            let others = BESIDE.iter().map(|lines| line_power(trial, values[named] + lines / duration));
+            beside += others.sum::<f64>() / BESIDE.len() as f64;
+        }
+        let squared = |factor: f64| factor * factor;
+        own > squared(OWN_LINE.value()) * beside && wave < squared(LEAST_PART_OF_OWN_WAVE.value()) * own
+    })
+}
+
+/// Square of the size of the wave of `frequency`, Hz, in the position of `trial`, through a raised cosine.
+fn line_power(trial: &ContactTrial, frequency: f64) -> f64 {
+    let (rows, first, duration) =
+        (trial.len().max(1) as f64, trial.time.first().copied().unwrap_or(0.0), trial.duration_s());
+    let mean = trial.position.iter().sum::<f64>() / rows;
+    let (mut sum, mut weights) = ([0.0; 2], 0.0);
+    for (time, position) in trial.time.iter().zip(&trial.position) {
+        let weight = 1.0 - (std::f64::consts::TAU * (time - first) / duration.max(f64::MIN_POSITIVE)).cos();
+        let (sine, cosine) = (std::f64::consts::TAU * frequency * time).sin_cos();
+        sum[0] += weight * (position - mean) * sine;
+        sum[1] += weight * (position - mean) * cosine;
+        weights += weight;
+    }
+    4.0 * (sum[0] * sum[0] + sum[1] * sum[1]) / (weights * weights).max(f64::MIN_POSITIVE)
 }
 
 /// The group of each row of `trial` beside a wave of `frequency`, Hz; `None` of a row before the `surface`.
@@ -164,6 +208,42 @@ mod tests {
         // Three depths, each held for four seconds: slow motion is loud at the wave's frequency, and tells it all the same.
         let steps = |t: f64| 2e-3 * (1.0 + [0.0, 2.0, 1.0][((t / 4.0) as usize).min(2)]);
         assert!(!is_in_step_with(steps, wave));
+    }
+
+    /// The size of a wave is that of the tool's, and what lies beside it is none of it.
+    #[test]
+    fn a_line_of_the_motion_has_its_size_and_leaves_what_is_beside_it() {
+        let mut trial = TestContact::PLAIN.trial(1);
+        let wave = |t: f64| 2e-3 * (std::f64::consts::TAU * 0.9 * t + 0.4).sin();
+        trial.position = trial.time.iter().map(|t| 5e-3 + wave(*t)).collect();
+        // Four lines away a raised cosine leaves 1 / 60 of a wave, as does the wave of the negative frequency here.
+        assert!((line_power(&trial, 0.9).sqrt() / 2e-3 - 1.0).abs() < 0.02);
+        assert!(line_power(&trial, 0.9 + 4.0 / trial.duration_s()).sqrt() < 2e-3 / 30.0);
+    }
+
+    /// A tool that goes by three waves: a surface that moves by a hundredth of one of them, and as one of them, is a spring that is wrong there; by half of it, or
+    /// between them, it moves.
+    #[test]
+    fn a_surface_that_moves_as_the_tool_does_is_a_law_of_the_tool() {
+        use super::super::super::term::Term;
+        let trials = [1, 2].map(|seed| {
+            let mut trial = TestContact::PLAIN.trial(seed);
+            let wave = |hz: f64, t: f64| 2e-3 * (std::f64::consts::TAU * hz * t).sin();
+            trial.position = trial.time.iter().map(|t| 6e-3 + wave(0.31, *t) + wave(0.9, *t) + wave(3.1, *t)).collect();
+            trial
+        });
+        let data = Data::new(&trials);
+        let nominal = nominal_fit(&data, &TestContact::nominal());
+        let effect = crate::effects::find("surface_motion").unwrap();
+        let is = |part: f64, frequency: f64| {
+            let term = Term { effect, form: 0 };
+            let own = term.spread(&[0.6 * part * 2e-3, 0.8 * part * 2e-3, frequency], trials.len());
+            let values = nominal.values.iter().copied().chain(own).collect();
+            is_of_the_tool(&data, &Fit { model: nominal.model.with(term), values, ..nominal.clone() })
+        };
+        assert!(is(0.01, 0.9) && is(0.2, 0.9) && is(0.01, 3.1));
+        assert!(!is(0.5, 0.9) && !is(0.01, 1.7) && !is(f64::NAN, 0.9));
+        assert!(!is_of_the_tool(&data, &nominal));
     }
 
     /// Four depths, each held for two and a half seconds by a tool that a pulse of 0.8 mm moves by a tenth of a millimetre: whichever way it goes tells the

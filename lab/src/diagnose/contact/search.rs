@@ -4,7 +4,7 @@ use super::circumstances::Circumstances;
 use super::data::Data;
 use super::fall::Fall;
 use super::fit::Fit;
-use super::in_step::is_in_step;
+use super::in_step::{is_in_step, is_of_the_tool};
 use super::model::ContactModel;
 
 /// What a search works on.
@@ -36,6 +36,7 @@ impl Search<'_> {
         !fit.model.is_at_end(&fit.values)
             && fit.model.is_as_stated(&fit.values)
             && !frequencies.any(|frequency| is_in_step(&self.coarse, fit, frequency))
+            && !is_of_the_tool(&self.coarse, fit)
             && (!falls(fit) || falls(&self.nominal))
     }
 

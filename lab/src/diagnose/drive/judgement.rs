@@ -2,13 +2,11 @@
 
 use super::alternatives::{Alternative, MOST_ALTERNATIVES, alternatives};
 use super::asymmetric_friction::as_asymmetric;
-use super::criteria::{
-    LEAST_PART_OF_EFFORT, MOST_LEFT, NOISE_POWER_KNOWN_TO, OVER_NOISE, UNKNOWN_PART_OF_EFFORT, VALUES_MATTER,
-};
+use super::criteria::{LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE, UNKNOWN_PART_OF_EFFORT, VALUES_MATTER};
 use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::Fit;
 use super::held_out::{Folds, missing_forces, rms};
-use super::lack_of_fit::{a_shape_does_better, has_a_shape};
+use super::lack_of_fit::{a_shape_does_better, has_a_shape, is_beyond};
 use super::model::index;
 use super::noise::Noise;
 use super::noise_at_rest::noise_at_rest;
@@ -100,8 +98,7 @@ fn unrivalled(
 ) -> (Validated, SensorNoise) {
     loop {
         let noise = SensorNoise::beside(search, &stands, common, seed);
-        let most = (1.0 + NOISE_POWER_KNOWN_TO.value()) * noise.recorded.powi(2);
-        let is_left = rms(&stands.held_out.missing).powi(2) > most;
+        let is_left = is_beyond(rms(&stands.held_out.missing), noise.recorded);
         match is_left.then(|| search.without_rivalled(&stands.fit)).flatten() {
             Some(fit) => stands = validated(search, folds, common, fit),
             None => return (stands, noise),
@@ -134,9 +131,8 @@ fn verdict(search: &Search<'_>, fit: &Fit, missing: &[Vec<Vec<f64>>; 3], noise: 
             (false, false) => Verdict::NoMismatch,
         };
     }
-    let is_notable = improved > OVER_NOISE * noise;
-    let is_left = is_notable && above(improved) > MOST_LEFT * above(refitted)
-        || a_shape_does_better(search, fit, &missing[2], is_notable, noise);
+    let is_left = improved > OVER_NOISE * noise && above(improved) > MOST_LEFT * above(refitted)
+        || a_shape_does_better(search, fit, &missing[2], noise);
     if is_left { Verdict::PartlyExplained } else { Verdict::Explained }
 }
 

@@ -1,7 +1,7 @@
 //! Whether a force that can be anything along one quantity does much better than the law that was found: then that is not all of it.
 
 use super::candidates::is_likelier;
-use super::criteria::{CURVE_PART, LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE};
+use super::criteria::{CURVE_PART, LEAST_PART_OF_EFFORT, MOST_LEFT, NOISE_POWER_KNOWN_TO, OVER_NOISE};
 use super::fit::Fit;
 use super::held_out::rms;
 use super::selection::Search;
@@ -28,13 +28,19 @@ pub fn has_a_shape(search: &Search<'_>, missing: &[Vec<f64>]) -> bool {
 }
 
 /// Whether a shape of no law does much better than the names of `fit`, which leave the force `missing`, a column a trial: a load by position or a
-/// tone, where that `is_notable` beside the sensors' `noise`, or friction, or an effort, that changes with time, place or velocity. Then they are not all of it.
+/// tone, where that is more than the sensors' `noise` is known to, or friction, or an effort, that changes with time, place or velocity, where that is
+/// notable. Then they are not all of it.
 #[must_use]
-pub fn a_shape_does_better(search: &Search<'_>, fit: &Fit, missing: &[Vec<f64>], is_notable: bool, noise: f64) -> bool {
-    let halves = |[left, after]: Lessened| is_halved(left, after, noise);
+pub fn a_shape_does_better(search: &Search<'_>, fit: &Fit, missing: &[Vec<f64>], noise: f64) -> bool {
+    let doubts = |[left, after]: Lessened| is_notable(left, after, noise) && is_halved(left, after, noise);
+    let doubts_what_is_there = |[left, after]: Lessened| {
+        (is_beyond(left, noise) || is_notable(left, after, noise)) && is_halved(left, after, noise)
+    };
+    let by_place = || by(search, fit, load_by_place(&search.scales));
+    let is_there = is_beyond(rms(missing), noise);
     leaves_much(search, fit)
-        && (is_notable && (halves(by_a_tone(missing)) || halves(by(search, fit, load_by_place(&search.scales))))
-            || courses(&search.scales, &fit.model).any(|course| halves(by(search, fit, course))))
+        && (is_there && (doubts_what_is_there(by_a_tone(missing)) || doubts_what_is_there(by_place()))
+            || courses(&search.scales, &fit.model).any(|course| doubts(by(search, fit, course))))
 }
 
 /// Whether `fit`, of a rigid drive, leaves so much of what the nominal law lacks, and of the effort, that its names are doubted.
@@ -59,11 +65,22 @@ fn by_a_tone(missing: &[Vec<f64>]) -> Lessened {
 }
 
 /// Whether of `left` beyond `noise` half is gone in what is left `after`, all root mean squares: no term takes that noise. It is no more than what
-/// any law leaves, and where that is all, there has to be notably more.
+/// any law leaves.
 fn is_halved(left: f64, after: f64, noise: f64) -> bool {
     let noise = noise.min(after);
     let beyond = |all: f64| (all * all - noise * noise).sqrt();
-    left > OVER_NOISE * noise && beyond(after) < CURVE_PART * beyond(left)
+    beyond(after) < CURVE_PART * beyond(left)
+}
+
+/// Whether there is notably more `left` than `noise`, which is no more than what is left `after`.
+fn is_notable(left: f64, after: f64, noise: f64) -> bool {
+    left > OVER_NOISE * noise.min(after)
+}
+
+/// Whether a force `left` is more than the sensors' `noise`, both root mean squares, whose power is known to [`NOISE_POWER_KNOWN_TO`].
+#[must_use]
+pub fn is_beyond(left: f64, noise: f64) -> bool {
+    left * left > (1.0 + NOISE_POWER_KNOWN_TO.value()) * noise * noise
 }
 
 #[cfg(test)]
@@ -71,7 +88,7 @@ mod tests {
     use super::super::criteria::UNKNOWN_PART_OF_EFFORT;
     use super::super::identification::identify;
     use super::super::testing::{TestDrive, nominal};
-    use super::{is_halved, rms};
+    use super::{is_beyond, is_halved, is_notable, rms};
     use crate::diagnose::verdict::Verdict;
 
     /// Less than the part of the effort from which a white force is unknown, and half of what is left: a force with a shape is there.
@@ -95,7 +112,9 @@ mod tests {
     fn what_is_halved_is_counted_beyond_the_noise() {
         assert!(is_halved(5.0, 3.6, 3.0) && !is_halved(5.0, 3.61, 3.0));
         // A law that leaves less than the noise shows that the noise is less: five thirds of what it leaves are notable, 1.4 times are not.
-        assert!(is_halved(5.0, 3.0, 4.0) && !is_halved(4.2, 3.0, 4.0));
+        assert!(is_notable(5.0, 3.0, 4.0) && !is_notable(4.2, 3.0, 4.0));
+        // A noise is known to a fifth.
+        assert!(is_beyond(3.61, 3.0) && !is_beyond(3.59, 3.0) && !is_beyond(f64::NAN, 3.0));
         assert!(!is_halved(f64::NAN, 3.0, 3.0) && !is_halved(5.0, f64::NAN, 3.0));
     }
 }

@@ -85,10 +85,25 @@ static SPEC: EffectSpec = EffectSpec {
             equation: "once touched, F is -pull_off_force height / release_height above the surface until it breaks at release_height",
             parameters: &[PULL, RELEASE_HEIGHT],
         },
+        Form {
+            name: "bilinear",
+            equation: "once touched, F above the surface is -pull_off_force height / peak_height up to peak_height, which is no more than pull_off_force / K, and from there on falls in a straight line to nothing at release_height",
+            parameters: &[
+                PULL,
+                RELEASE_HEIGHT,
+                Parameter::new(
+                    "peak_height",
+                    Word::new("m", "rad"),
+                    "height above the surface at which the pull is greatest",
+                    0.0,
+                    f64::INFINITY,
+                ),
+            ],
+        },
     ],
     excited_by: "leaving the surface, slowly and often",
     resembles: &["force_bias", "lost_motion"],
-    source: "a liquid bridge; D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
+    source: "a liquid bridge; D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; one that rises first: P. H. Geubelle, J. S. Baylor, Compos. B 29 (1998) 589; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
 };
 
 /// Indices of the forms.
@@ -99,7 +114,11 @@ mod form {
     pub const CAPILLARY: usize = 4;
     pub const SPHERE: usize = 5;
     pub const BOND: usize = 6;
+    pub const BILINEAR: usize = 7;
 }
+
+/// Height of the greatest pull of a neck of its own stiffness, over that of its end, where nothing is known of it.
+const USUAL_PEAK: f64 = 0.2;
 
 /// The height at which a pull ends by `form`, of which half was measured last at a height above the surface, where it is greatest at `stretched`; `None`
 /// where it was not measured above that.
@@ -107,6 +126,7 @@ fn seen_end(form: usize, scene: &ExcitationStats, stretched: f64) -> Option<f64>
     let half = scene.half_pull_height;
     let end = match form {
         form::COHESIVE => 2.0 * half - stretched,
+        form::BILINEAR => 2.0 * half / (1.0 + USUAL_PEAK),
         form::BRIDGE | form::CAPILLARY => 2.0 * half,
         _ => half,
     };
@@ -159,6 +179,11 @@ impl Effect for Adhesion {
                 .chain(seen.map(|end| Start::at(&[scene.pull, end, end - stretched])))
                 .collect();
         }
+        if form == form::BILINEAR {
+            // Of a small pull nobody sees how it rises.
+            let own = measured.chain(seen).map(|height| Start::at(&[scene.pull, height, USUAL_PEAK * height]));
+            return own.filter(|start| start.values[2] * scene.stiffness < scene.pull).collect();
+        }
         let small = heights.map(|height| Start::sized(&[force, height], &[0]));
         small.chain(measured.chain(seen).map(|height| Start::at(&[scene.pull, height]))).collect()
     }
@@ -192,6 +217,16 @@ impl Effect for Adhesion {
             }
             form::BOND => {
                 touch.force -= values[0] * (-touch.position).max(0.0) / values[1].max(f64::MIN_POSITIVE);
+                return;
+            }
+            form::BILINEAR => {
+                // A neck that is softer than the spring is the spring's own pull, as of the other forms.
+                let (height, softest) =
+                    ((-touch.position).max(0.0), values[0] / touch.stiffness.max(f64::MIN_POSITIVE));
+                let peak = values[2].min(values[1]).min(softest);
+                let rising = height / peak.max(f64::MIN_POSITIVE);
+                let falling = (values[1] - height) / (values[1] - peak).max(f64::MIN_POSITIVE);
+                touch.force -= values[0] * rising.min(falling).clamp(0.0, 1.0);
                 return;
             }
             _ => {}
@@ -285,7 +320,16 @@ mod tests {
             releases: 3,
             ..ExcitationStats::default()
         };
-        for form in [0, form::ATTRACTION, form::COHESIVE, form::BRIDGE, form::CAPILLARY, form::SPHERE, form::BOND] {
+        for form in [
+            0,
+            form::ATTRACTION,
+            form::COHESIVE,
+            form::BRIDGE,
+            form::CAPILLARY,
+            form::SPHERE,
+            form::BOND,
+            form::BILINEAR,
+        ] {
             let whole = |start: &Start| start.linear_parameters.is_empty() && start.values[0] == scene.pull;
             let starts: Vec<Start> = Adhesion.starts(form, &scene).into_iter().filter(whole).collect();
             assert!(!starts.is_empty(), "form {form}");
@@ -316,6 +360,28 @@ mod tests {
         assert!(is_tried(form::COHESIVE, 0.95e-3, &[1.6, 1.5e-3, 1.1e-3]));
         assert!(is_tried(form::BRIDGE, 0.75e-3, &[1.6, 1.5e-3]) && is_tried(form::BOND, 0.75e-3, &[1.6, 0.75e-3]));
         assert!(Adhesion.starts(form::COHESIVE, &scene(0.0)).iter().all(|start| start.values[2] > start.values[1]));
+    }
+
+    /// A neck that is three times as stiff as the spring of 100 N/m and softens from 0.3 N at 1 mm to nothing at 4 mm.
+    #[test]
+    fn a_neck_of_its_own_stiffness_rises_to_its_peak_and_falls_to_its_end() {
+        let contact = Contact { surface: 0.0, stiffness: 100.0, damping: 0.0, bilateral: false };
+        let actives = [ActiveEffect { effect: &Adhesion, form: form::BILINEAR, values: &[0.3, 4e-3, 1e-3] }];
+        let mut law = ContactSimulator::new(contact, &actives);
+        let path = [-1e-3, 5e-3, -0.5e-3, -1e-3, -2.5e-3, -4e-3, -4.1e-3, -1e-3];
+        let forces = path.map(|place| law.step(0.0, 1e-3, place, -1e-3, 0.0, 0.0));
+        let expected = [0.0, 0.5, -0.15, -0.3, -0.15, 0.0, 0.0, 0.0];
+        for (force, expected) in forces.iter().zip(expected) {
+            assert!((force - expected).abs() < 1e-12, "{forces:?}");
+        }
+        // A peak beyond the end, or beyond where the spring would pull as much, is there.
+        for (values, expected) in [([0.3, 2e-3, 9e-3], -0.15), ([0.3, 5e-3, 4e-3], -0.1)] {
+            let actives = [ActiveEffect { effect: &Adhesion, form: form::BILINEAR, values: &values }];
+            let mut law = ContactSimulator::new(contact, &actives);
+            let forces =
+                [1e-3, -1e-3, values[1], -values[1] - 1e-4].map(|place| law.step(0.0, 1e-3, place, -1e-3, 0.0, 0.0));
+            assert!((forces[1] - expected).abs() < 1e-12 && forces[3] == 0.0, "{forces:?}");
+        }
     }
 
     #[test]

@@ -110,6 +110,21 @@ static SPEC: EffectSpec = EffectSpec {
                 Parameter::fixed("reference_time", SECOND, "time at which the memory's ratio is stated"),
             ],
         },
+        Form {
+            name: "one_branch_anew",
+            equation: "F = K x + B v + z, dz/dt = branch_stiffness v - z / relaxation_time, z = 0 before each touch",
+            parameters: &[branch_stiffness("branch_stiffness"), time("relaxation_time")],
+        },
+        Form {
+            name: "two_branches_anew",
+            equation: "F = K x + B v + z1 + z2, dz1/dt = branch_stiffness v - z1 / relaxation_time, z2 alike with second_stiffness, second_time, z1 = z2 = 0 before each touch",
+            parameters: &[
+                branch_stiffness("branch_stiffness"),
+                time("relaxation_time"),
+                branch_stiffness("second_stiffness"),
+                time("second_time"),
+            ],
+        },
     ],
     excited_by: "holds after a quick approach; two or more frequencies",
     resembles: &["channel_delay", "force_lag", "time_varying_stiffness", "plastic_set"],
@@ -123,6 +138,8 @@ mod form {
     pub const THREE: usize = 2;
     /// From here on what relaxes is the spring's force by its own law, and before the depth; otherwise in the same order.
     pub const QUASI_LINEAR: usize = 4;
+    /// From here on a branch forgets while nothing is touched: each touch meets what was not strained before, as another spot or a layer that flows back.
+    pub const ANEW: usize = 8;
 }
 
 /// Branches of `form`, what it strains set aside; `None` of a power law.
@@ -133,6 +150,11 @@ const fn branches(form: usize) -> Option<usize> {
         form::THREE => Some(3),
         _ => None,
     }
+}
+
+/// Whether what relaxes in `form` is the spring's force by its own law.
+const fn is_quasi_linear(form: usize) -> bool {
+    form >= form::QUASI_LINEAR && form < form::ANEW
 }
 
 /// Branches that a power law of time is made of, and the factor between their times: six decades in all. At an exponent of 0.25 the
@@ -192,6 +214,12 @@ impl<'a> Branches<'a> {
         *force
     }
 
+    /// Nothing has been strained yet.
+    fn forget(&mut self) {
+        self.moved = 0.0;
+        self.state[slot::BRANCHES..slot::DECAYS].fill(0.0);
+    }
+
     /// Force of a memory `size (t / reference)^-exponent`: t^-a = integral tau^-a exp(-t / tau) d ln(tau) / Gamma(a), in equal steps of
     /// ln(tau) about `reference`.
     fn power_law(&mut self, size: f64, exponent: f64, reference: f64) -> f64 {
@@ -223,17 +251,21 @@ impl Effect for StressRelaxation {
             Foundation::any_form("layered_stiffness"),
             Foundation::any_form("plastic_set"),
         ];
-        if form >= form::QUASI_LINEAR { &LAWS } else { &[] }
+        if is_quasi_linear(form) { &LAWS } else { &[] }
     }
 
     fn simpler(&self, form: usize, values: &[f64], stiffness: f64) -> Option<(usize, Vec<f64>)> {
         let mut values = values.to_vec();
         (0..branches(form).unwrap_or(1)).for_each(|nth| values[2 * nth] *= stiffness);
-        (form >= form::QUASI_LINEAR).then(|| (form - form::QUASI_LINEAR, values))
+        is_quasi_linear(form).then(|| (form - form::QUASI_LINEAR, values))
     }
 
     fn starts(&self, form: usize, scene: &ExcitationStats) -> Vec<Start> {
-        let size = if form >= form::QUASI_LINEAR { 0.2 } else { 0.2 * scene.stiffness };
+        // Where nothing is touched twice both kinds of memory are one.
+        if form >= form::ANEW && scene.releases == 0 {
+            return Vec::new();
+        }
+        let size = if is_quasi_linear(form) { 0.2 } else { 0.2 * scene.stiffness };
         let times = geometric(2.0 * scene.step, scene.duration, 10);
         // Branches whose times are as far apart, by factors.
         let spread = |count: usize, apart: usize| {
@@ -256,8 +288,11 @@ impl Effect for StressRelaxation {
     }
 
     fn act_on_contact(&self, form: usize, values: &[f64], state: &mut EffectState, touch: &mut ContactState) {
-        let strained = if form >= form::QUASI_LINEAR { touch.spring } else { touch.depth };
+        let strained = if is_quasi_linear(form) { touch.spring } else { touch.depth };
         let mut memory = Branches::at(state, strained, touch.step);
+        if form >= form::ANEW && touch.inside == 0.0 {
+            memory.forget();
+        }
         touch.extra += match branches(form) {
             Some(count) => (0..count).map(|nth| memory.branch(nth, values[2 * nth], values[2 * nth + 1])).sum(),
             None => memory.power_law(values[0], values[1], values[2]),
