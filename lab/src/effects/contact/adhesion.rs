@@ -179,10 +179,12 @@ impl Effect for Adhesion {
                 .chain(seen.map(|end| Start::at(&[scene.pull, end, end - stretched])))
                 .collect();
         }
-        if form == form::BILINEAR {
-            // Of a small pull nobody sees how it rises.
+        if form == form::BILINEAR && scene.pull > 0.0 {
             let own = measured.chain(seen).map(|height| Start::at(&[scene.pull, height, USUAL_PEAK * height]));
             return own.filter(|start| start.values[2] * scene.stiffness < scene.pull).collect();
+        }
+        if form == form::BILINEAR {
+            return heights.map(|height| Start::sized(&[force, height, USUAL_PEAK * height], &[0])).collect();
         }
         let small = heights.map(|height| Start::sized(&[force, height], &[0]));
         small.chain(measured.chain(seen).map(|height| Start::at(&[scene.pull, height]))).collect()
