@@ -173,11 +173,13 @@ impl Recorded<'_> {
         let known = effects::resolve_all(self.rig, self.origin)?;
         let is_recorded = drive::prepare::is_recorded(self.rig, trials);
         let nominal = drive::prepare::nominal(self.rig, trials, known).filter(|_| is_recorded);
-        let mut seen = drive::prepare::trials(self.rig, trials);
-        for (trial, spans) in seen.iter_mut().zip(clipped).filter(|(_, spans)| !spans.is_empty()) {
-            *trial = trial.without(spans);
-        }
-        Ok(nominal.map(|nominal| (seen, nominal)))
+        Ok(nominal.map(|nominal| {
+            let mut seen = drive::prepare::trials(self.rig, trials);
+            for (trial, spans) in seen.iter_mut().zip(clipped).filter(|(_, spans)| !spans.is_empty()) {
+                *trial = trial.without(spans);
+            }
+            (seen, nominal)
+        }))
     }
 }
 
