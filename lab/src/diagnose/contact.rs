@@ -44,6 +44,7 @@ pub mod testing;
 pub mod tones;
 pub mod trial;
 pub mod variance;
+pub mod velocity_jumps;
 mod wandering_zero;
 mod weights;
 pub mod worth;

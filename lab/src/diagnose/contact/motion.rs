@@ -2,8 +2,11 @@
 //!
 //! The motion is a third integral of white noise, x''' = w, seen by an encoder whose rounding and noise are white. The Kalman filter
 //! and the fixed-interval smoother (A. E. Bryson, M. Frazier, 1963) are exact for rows at any instants. The density of w is the most likely one, so
-//! that no bandwidth has to be chosen.
+//! that no bandwidth has to be chosen. Where a blow changes the velocity within a row, w is not white: there the velocity is free to jump
+//! ([`super::velocity_jumps`]), so that the density of the whole trial is not that of its blows.
 
+use super::criteria::LEAST_JUMP_MEMORY;
+use super::velocity_jumps::{self, JumpTest};
 use crate::diagnose::golden_section::least_between;
 
 /// A smoothed motion, one entry a row.
@@ -38,8 +41,8 @@ impl Motion {
     }
 }
 
-type Vector = [f64; 3];
-type Matrix = [[f64; 3]; 3];
+pub(super) type Vector = [f64; 3];
+pub(super) type Matrix = [[f64; 3]; 3];
 
 /// The motion behind `position` at the instants `time`, whose rows have `variance`.
 #[must_use]
@@ -47,8 +50,30 @@ pub fn smoothed(time: &[f64], position: &[f64], variance: f64) -> Motion {
     let Some(rows) = Rows::of(time, position, variance) else {
         return Motion { position: position.to_vec(), ..Motion::zeros(position.len()) };
     };
-    let density = rows.most_likely_density();
-    rows.smooth(density)
+    let mut jumps = vec![0.0; time.len()];
+    let mut density = rows.most_likely_density(&jumps);
+    let (mut motion, mut tests) = rows.smooth(density, &jumps);
+    for _ in 0..MOST_ROUNDS {
+        let memory = memory_rows(density);
+        if memory < LEAST_JUMP_MEMORY.value() {
+            break;
+        }
+        let found = velocity_jumps::beyond_chance(&tests, memory);
+        if found.is_empty() {
+            break;
+        }
+        for row in found {
+            jumps[row] = jumps[row].max(tests[row].size.powi(2));
+        }
+        density = rows.most_likely_density(&jumps);
+        (motion, tests) = rows.smooth(density, &jumps);
+    }
+    motion
+}
+
+/// Rows that the filter remembers: in so many, a white third derivative of this `density` moves the position by about the noise of a row, which is one here.
+fn memory_rows(density: f64) -> f64 {
+    density.powf(-1.0 / 6.0)
 }
 
 /// Rows in units of the encoder's deviation and of the usual step, in which all numbers are near one.
@@ -75,6 +100,9 @@ const LN_DENSITY: [f64; 2] = [-46.0, 12.0];
 /// Precision of its logarithm.
 const LN_PRECISION: f64 = 0.25;
 
+/// Rounds in which jumps are looked for: those of one round lessen the density, beside which smaller ones show. The third found a fiftieth of the jumps of the first.
+const MOST_ROUNDS: usize = 6;
+
 impl<'a> Rows<'a> {
     fn of(time: &'a [f64], position: &'a [f64], variance: f64) -> Option<Self> {
         let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -100,16 +128,18 @@ impl<'a> Rows<'a> {
         (before, (self.position[row] - self.position[0]) / self.deviation)
     }
 
-    fn most_likely_density(&self) -> f64 {
-        least_between(LN_DENSITY, LN_PRECISION, |ln| -self.log_likelihood(ln.exp())).exp()
+    fn most_likely_density(&self, jumps: &[f64]) -> f64 {
+        least_between(LN_DENSITY, LN_PRECISION, |ln| -self.log_likelihood(ln.exp(), jumps)).exp()
     }
 
-    fn log_likelihood(&self, density: f64) -> f64 {
+    /// With the variance of the jump of the velocity before each row.
+    fn log_likelihood(&self, density: f64, jumps: &[f64]) -> f64 {
         let (mut state, mut covariance) = self.start();
         let mut sum = 0.0;
         for row in 0..self.time.len() {
             let (step, seen) = self.row(row);
             predict(&mut state, &mut covariance, step, density);
+            velocity_jumps::allow(&mut covariance, step, jumps[row]);
             let (innovation, variance) = (seen - state[0], covariance[0][0] + 1.0);
             // The first rows find where the motion starts.
             if row >= 3 {
@@ -120,23 +150,29 @@ impl<'a> Rows<'a> {
         sum
     }
 
-    fn smooth(&self, density: f64) -> Motion {
+    /// The motion, and what each row says of a jump of the velocity before it.
+    fn smooth(&self, density: f64, jumps: &[f64]) -> (Motion, Vec<JumpTest>) {
         let count = self.time.len();
         let mut kept = Vec::with_capacity(count);
         let (mut state, mut covariance) = self.start();
         for row in 0..count {
             let (step, seen) = self.row(row);
             predict(&mut state, &mut covariance, step, density);
+            velocity_jumps::allow(&mut covariance, step, jumps[row]);
             let (innovation, variance) = (seen - state[0], covariance[0][0] + 1.0);
             kept.push(Kept { state, covariance, innovation, variance });
             correct(&mut state, &mut covariance, innovation, variance);
         }
-        let mut motion = Motion::zeros(count);
+        let (mut motion, mut tests) = (Motion::zeros(count), vec![JumpTest::default(); count]);
         let (scale, rate) = (self.deviation, self.deviation / self.step);
         let (mut adjoint, mut information): (Vector, Matrix) = ([0.0; 3], [[0.0; 3]; 3]);
         for row in (0..count).rev() {
             let Kept { state, covariance, innovation, variance } = &kept[row];
             through_row(&mut adjoint, &mut information, covariance, *innovation, *variance);
+            // Nothing is known before the first rows, from which a velocity could have jumped.
+            if row >= 3 {
+                tests[row] = JumpTest::of(&adjoint, &information, self.row(row).0);
+            }
             let moved = product(covariance, &adjoint);
             let spread = |at: usize| {
                 let column: Vector = std::array::from_fn(|other| covariance[other][at]);
@@ -152,7 +188,7 @@ impl<'a> Rows<'a> {
             let (step, _) = self.row(row);
             back_over(&mut adjoint, &mut information, step);
         }
-        motion
+        (motion, tests)
     }
 }
 
@@ -252,5 +288,128 @@ mod tests {
         // over some ten rows.
         let ratios = [place / 3800.0, speed / 3800.0, change / 3800.0];
         assert!(ratios.iter().all(|ratio| (0.1..1.6).contains(ratio)), "{ratios:?}");
+    }
+
+    /// A ball that falls from 5 mm above a plate and loses a tenth of its speed at each blow, read in steps of 0.1 mm every millisecond.
+    fn bouncing() -> (Vec<f64>, Vec<f64>, Vec<f64>, Vec<usize>) {
+        let (mut height, mut speed, gravity, step) = (5e-3, 0.0, 0.8, 1e-3);
+        let (mut place, mut velocity, mut blows) = (Vec::new(), Vec::new(), Vec::new());
+        for row in 0..1100 {
+            place.push((height / 1e-4_f64).round() * 1e-4);
+            velocity.push(speed);
+            let mut left = step;
+            // The instant of the blow solves height + speed t - g t^2 / 2 = 0.
+            let ahead = (speed + f64::sqrt(speed * speed + 2.0 * gravity * height)) / gravity;
+            if ahead < step {
+                speed = -0.9 * (speed - gravity * ahead);
+                (height, left) = (0.0, step - ahead);
+                blows.push(row + 1);
+            }
+            height += speed * left - 0.5 * gravity * left * left;
+            speed -= gravity * left;
+        }
+        ((0..1100).map(|row| f64::from(row) * step).collect(), place, velocity, blows)
+    }
+
+    /// Every blow of a ball is found to the row, nothing else is, and the velocity is known as its variance says also around them: without
+    /// jumps its squared errors are several times that.
+    #[test]
+    fn a_velocity_may_jump_at_a_blow() {
+        let (time, place, velocity, blows) = bouncing();
+        let variance = 1e-8 / 12.0;
+        let rows = Rows::of(&time, &place, variance).unwrap();
+        let none = vec![0.0; time.len()];
+        let density = rows.most_likely_density(&none);
+        let (smeared, tests) = rows.smooth(density, &none);
+        let mut found = velocity_jumps::beyond_chance(&tests, memory_rows(density));
+        found.sort_unstable();
+        assert_eq!(found, blows);
+        let weighed = |motion: &Motion| {
+            // The first and the last rows are known from one side alone.
+            let square = |row: usize| (motion.velocity[row] - velocity[row]).powi(2) / motion.velocity_variance[row];
+            (50..1050).map(square).sum::<f64>() / 1000.0
+        };
+        let (free, bound) = (weighed(&smoothed(&time, &place, variance)), weighed(&smeared));
+        assert!(free < 1.6 && bound > 2.0 * free, "{free} and {bound}");
+    }
+
+    /// What a row says of a jump is what generalised least squares says: the innovations regressed on those of a unit jump.
+    #[test]
+    fn a_jump_is_tested_as_by_generalised_least_squares() {
+        let (time, place, ..) = bouncing();
+        let rows = Rows::of(&time[..400], &place[..400], 1e-8 / 12.0).unwrap();
+        let (density, none) = (1e-3, vec![0.0; 400]);
+        let (_, tests) = rows.smooth(density, &none);
+        for jump in [60, 171, 333] {
+            // Of a unit jump in the middle of the time before its row.
+            let ramp = |row: usize| if row < jump { 0.0 } else { (row - jump) as f64 + 0.5 };
+            let (mut state, mut covariance) = rows.start();
+            let (mut answer, mut ignored) = ([0.0; 3], covariance);
+            let (mut product, mut square) = (0.0, 0.0);
+            for row in 0..400 {
+                let (step, seen) = rows.row(row);
+                predict(&mut state, &mut covariance, step, density);
+                predict(&mut answer, &mut ignored, step, density);
+                let variance = covariance[0][0] + 1.0;
+                let (mine, unit) = (seen - state[0], ramp(row) - answer[0]);
+                product += mine * unit / variance;
+                square += unit * unit / variance;
+                let mut same = covariance;
+                correct(&mut state, &mut covariance, mine, variance);
+                correct(&mut answer, &mut same, unit, variance);
+            }
+            let test = tests[jump];
+            // The wide start costs eight of sixteen digits.
+            assert!((test.size - product / square).abs() < 1e-6 * test.size.abs(), "{test:?}");
+            assert!((test.statistic - product * product / square).abs() < 1e-6 * test.statistic, "{test:?}");
+        }
+    }
+
+    /// A stage that starts and stops within two rows, read a hundred times finer than it moves in one: the rows tell the velocity, and no jump is put into
+    /// it, though one would gain likelihood.
+    #[test]
+    fn a_quick_start_behind_a_fine_encoder_is_no_jump() {
+        let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(5);
+        let normal = Normal::new(0.0, 0.01).unwrap();
+        let time: Vec<f64> = (0..1000).map(f64::from).collect();
+        let (mut place, mut speed) = (0.0, 0.0);
+        let seen: Vec<f64> = (0..1000)
+            .map(|row| {
+                let aim = if row / 50 % 2 == 0 { 0.0 } else { 1.0 };
+                speed += f64::clamp(aim - speed, -0.5, 0.5);
+                place += speed;
+                place + normal.sample(&mut random)
+            })
+            .collect();
+        let rows = Rows::of(&time, &seen, 1e-4).unwrap();
+        let none = vec![0.0; time.len()];
+        let density = rows.most_likely_density(&none);
+        let (plain, tests) = rows.smooth(density, &none);
+        assert!(!velocity_jumps::beyond_chance(&tests, memory_rows(density)).is_empty());
+        assert_eq!(smoothed(&time, &seen, 1e-4).velocity, plain.velocity);
+    }
+
+    /// Of forty motions whose third derivative is white none has a jump: in a hundred one or less is expected.
+    #[test]
+    fn a_smooth_motion_has_no_jump() {
+        for seed in 0..40 {
+            let mut random = rand_chacha::ChaCha12Rng::seed_from_u64(seed);
+            let normal = Normal::new(0.0, 1.0).unwrap();
+            let time: Vec<f64> = (0..2000).map(f64::from).collect();
+            let mut state = [0.0f64; 3];
+            let place: Vec<f64> = time
+                .iter()
+                .map(|_| {
+                    state = product(&transition(1.0), &state);
+                    state[2] += 0.02 * normal.sample(&mut random);
+                    state[0] + normal.sample(&mut random)
+                })
+                .collect();
+            let rows = Rows::of(&time, &place, 1.0).unwrap();
+            let none = vec![0.0; time.len()];
+            let density = rows.most_likely_density(&none);
+            let found = velocity_jumps::beyond_chance(&rows.smooth(density, &none).1, memory_rows(density));
+            assert!(found.is_empty(), "{seed}: {found:?}");
+        }
     }
 }
