@@ -136,10 +136,10 @@ impl<'a> Rows<'a> {
     fn log_likelihood(&self, density: f64, jumps: &[f64]) -> f64 {
         let (mut state, mut covariance) = self.start();
         let mut sum = 0.0;
-        for row in 0..self.time.len() {
+        for (row, jump) in jumps.iter().enumerate() {
             let (step, seen) = self.row(row);
             predict(&mut state, &mut covariance, step, density);
-            velocity_jumps::allow(&mut covariance, step, jumps[row]);
+            velocity_jumps::allow(&mut covariance, step, *jump);
             let (innovation, variance) = (seen - state[0], covariance[0][0] + 1.0);
             // The first rows find where the motion starts.
             if row >= 3 {
@@ -155,10 +155,10 @@ impl<'a> Rows<'a> {
         let count = self.time.len();
         let mut kept = Vec::with_capacity(count);
         let (mut state, mut covariance) = self.start();
-        for row in 0..count {
+        for (row, jump) in jumps.iter().enumerate() {
             let (step, seen) = self.row(row);
             predict(&mut state, &mut covariance, step, density);
-            velocity_jumps::allow(&mut covariance, step, jumps[row]);
+            velocity_jumps::allow(&mut covariance, step, *jump);
             let (innovation, variance) = (seen - state[0], covariance[0][0] + 1.0);
             kept.push(Kept { state, covariance, innovation, variance });
             correct(&mut state, &mut covariance, innovation, variance);

@@ -47,7 +47,7 @@ pub fn allow(covariance: &mut Matrix, step: f64, variance: f64) {
 const OWN_MEMORIES: f64 = 4.0;
 
 /// The rows before which the velocity jumps by more than chance in any of them, the greatest first. One explains what shows
-/// within [`OWN_MEMORIES`] of it, of `memory` rows each.
+/// within `OWN_MEMORIES` of it, of `memory` rows each.
 #[must_use]
 pub fn beyond_chance(tests: &[JumpTest], memory: f64) -> Vec<usize> {
     // A deviation beyond s^1/2 to either side has a probability below e^(-s/2).
