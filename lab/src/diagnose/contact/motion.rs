@@ -1,11 +1,14 @@
 //! The tool's motion behind encoder rows: position, velocity and acceleration with their variances.
 //!
-//! The motion is a third integral of white noise, x''' = w, seen by an encoder whose rounding and noise are white. The Kalman filter
+//! The motion is a third integral of white noise, x''' = w, seen by an encoder whose errors are independent from row to row, as [`EncoderReadings`] has them. The Kalman filter
 //! and the fixed-interval smoother (A. E. Bryson, M. Frazier, 1963) are exact for rows at any instants. The density of w is the most likely one, so
 //! that no bandwidth has to be chosen. Where a blow changes the velocity within a row, w is not white: there the velocity is free to jump
-//! ([`super::velocity_jumps`]), so that the density of the whole trial is not that of its blows.
+//! ([`super::velocity_jumps`]), so that the density of the whole trial is not that of its blows; where the motion is livelier than in the rest of the trial, its
+//! density is greater ([`super::local_density`]).
 
 use super::criteria::LEAST_JUMP_MEMORY;
+use super::encoder_readings::EncoderReadings;
+use super::local_density::{self, DensityEvidence};
 use super::velocity_jumps::{self, JumpTest};
 use crate::diagnose::golden_section::least_between;
 
@@ -39,36 +42,47 @@ impl Motion {
             acceleration_variance: zeros(),
         }
     }
+
+    /// That of the rows that `count` alone.
+    fn only(self, count: &[bool]) -> Self {
+        let only =
+            |values: Vec<f64>| values.into_iter().zip(count).filter_map(|(value, is)| is.then_some(value)).collect();
+        Self {
+            position: only(self.position),
+            velocity: only(self.velocity),
+            acceleration: only(self.acceleration),
+            position_variance: only(self.position_variance),
+            velocity_variance: only(self.velocity_variance),
+            acceleration_variance: only(self.acceleration_variance),
+        }
+    }
 }
 
 pub(super) type Vector = [f64; 3];
 pub(super) type Matrix = [[f64; 3]; 3];
 
-/// The motion behind `position` at the instants `time`, whose rows have `variance`.
+/// The motion behind `readings`, at the instants of the recording's rows.
 #[must_use]
-pub fn smoothed(time: &[f64], position: &[f64], variance: f64) -> Motion {
-    let Some(rows) = Rows::of(time, position, variance) else {
-        return Motion { position: position.to_vec(), ..Motion::zeros(position.len()) };
+pub fn smoothed(readings: &EncoderReadings) -> Motion {
+    let Some(mut rows) = Rows::of(readings) else {
+        let motion = Motion { position: readings.position.clone(), ..Motion::zeros(readings.time.len()) };
+        return motion.only(&readings.is_row);
     };
-    let mut jumps = vec![0.0; time.len()];
-    let mut density = rows.most_likely_density(&jumps);
-    let (mut motion, mut tests) = rows.smooth(density, &jumps);
-    for _ in 0..MOST_ROUNDS {
-        let memory = memory_rows(density);
-        if memory < LEAST_JUMP_MEMORY.value() {
+    let none = vec![0.0; readings.time.len()];
+    let mut density = rows.most_likely_density(&none);
+    for _ in 0..SHARING_ROUNDS {
+        if readings.sharing.iter().all(|rows| *rows <= rows_averaged(density)) {
             break;
         }
-        let found = velocity_jumps::beyond_chance(&tests, memory);
-        if found.is_empty() {
-            break;
-        }
-        for row in found {
-            jumps[row] = jumps[row].max(tests[row].size.powi(2));
-        }
-        density = rows.most_likely_density(&jumps);
-        (motion, tests) = rows.smooth(density, &jumps);
+        rows.averaged = rows_averaged(density);
+        density = rows.most_likely_density(&none);
     }
-    motion
+    // Of rows with noise of their own nothing tells a noise that is louder for a while from motion.
+    if readings.goes_in_steps() {
+        rows.raise_where_lively(density);
+    }
+    let (jumps, density) = rows.jumps(density);
+    rows.smooth(density, &jumps).motion.only(&readings.is_row)
 }
 
 /// Rows that the filter remembers: in so many, a white third derivative of this `density` moves the position by about the noise of a row, which is one here.
@@ -76,14 +90,34 @@ fn memory_rows(density: f64) -> f64 {
     density.powf(-1.0 / 6.0)
 }
 
+/// Rows over which the smoother averages where they share one error: the variance that it leaves of white noise R is the integral of 1 / (1 + (w m)^6) over
+/// frequency, R / (3 m), with the memory m = (R / q)^(1/6) of density q; with R as many times one as the rows that it averages, n = 3 m, it is n = 3^(6/5) q^(-1/5).
+fn rows_averaged(density: f64) -> f64 {
+    (3f64.powf(1.2) * density.powf(-0.2)).max(1.0)
+}
+
 /// Rows in units of the encoder's deviation and of the usual step, in which all numbers are near one.
 struct Rows<'a> {
     time: &'a [f64],
     position: &'a [f64],
-    /// Deviation of a row.
+    readings: &'a EncoderReadings,
+    /// Rows that the smoother averages at the most: so many of those that share an error tell as much as one.
+    averaged: f64,
+    /// Least variance that a row is taken to have.
+    finest: f64,
+    /// Deviation of the surest row.
     deviation: f64,
     /// Usual time between rows, s.
     step: f64,
+    /// Of the density before each row, over that of the trial; at least one.
+    parts: Vec<f64>,
+}
+
+/// What the way back tells: the motion, and of each row what all rows say of a jump of the velocity and of the density before it.
+struct Smoothed {
+    motion: Motion,
+    jumps: Vec<JumpTest>,
+    evidence: Vec<DensityEvidence>,
 }
 
 /// What the filter keeps of a row for the way back.
@@ -100,21 +134,46 @@ const LN_DENSITY: [f64; 2] = [-46.0, 12.0];
 /// Precision of its logarithm.
 const LN_PRECISION: f64 = 0.25;
 
+/// Rounds in which the rows that are averaged and the density follow each other. The fourth changed neither by a tenth.
+const SHARING_ROUNDS: usize = 3;
+
+/// Rounds in which the density of lively stretches is raised. Behind coarse encoders the third changed no error by a fiftieth; a stretch a thousand times as lively as
+/// the rest took four to be known within the root of two.
+const LOCAL_ROUNDS: usize = 4;
+
 /// Rounds in which jumps are looked for: those of one round lessen the density, beside which smaller ones show. The third found a fiftieth of the jumps of the first.
 const MOST_ROUNDS: usize = 6;
 
 impl<'a> Rows<'a> {
-    fn of(time: &'a [f64], position: &'a [f64], variance: f64) -> Option<Self> {
-        let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        if steps.len() < 4 {
+    fn of(readings: &'a EncoderReadings) -> Option<Self> {
+        let EncoderReadings { time, position, variance, is_row, step_s, .. } = readings;
+        if is_row.iter().filter(|is_row| **is_row).count() < 5 {
             return None;
         }
-        let middle = steps.len() / 2;
-        let step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let rows = variance.iter().zip(is_row).filter_map(|(variance, is_row)| is_row.then_some(*variance));
+        let surest = rows.fold(f64::INFINITY, f64::min);
         let span = position.iter().fold(0.0f64, |most, value| most.max((value - position[0]).abs()));
         // A reading without noise still is one of finite digits.
-        let deviation = variance.sqrt().max(1e-9 * span);
-        (step > 0.0 && deviation > 0.0).then_some(Self { time, position, deviation, step })
+        let finest = 1e-18 * span * span;
+        let deviation = surest.max(finest).sqrt();
+        let is_known = *step_s > 0.0 && deviation > 0.0;
+        is_known.then_some(Self {
+            time,
+            position,
+            readings,
+            averaged: 1.0,
+            finest,
+            deviation,
+            step: *step_s,
+            parts: vec![1.0; time.len()],
+        })
+    }
+
+    /// Variance of `row` by itself, over the square of the deviation, as many times as it shares its error with others that are averaged.
+    fn variance(&self, row: usize) -> f64 {
+        let EncoderReadings { variance, sharing, .. } = self.readings;
+        variance[row].max(self.finest) / self.deviation.powi(2)
+            * sharing[row].min((self.averaged * self.parts[row].powf(-0.2)).max(1.0))
     }
 
     fn start(&self) -> (Vector, Matrix) {
@@ -132,15 +191,45 @@ impl<'a> Rows<'a> {
         least_between(LN_DENSITY, LN_PRECISION, |ln| -self.log_likelihood(ln.exp(), jumps)).exp()
     }
 
+    /// Raises the parts of `density` where the motion is livelier than in the rest of the trial.
+    fn raise_where_lively(&mut self, density: f64) {
+        let none = vec![0.0; self.time.len()];
+        for _ in 0..LOCAL_ROUNDS {
+            let evidence = self.smooth(density, &none).evidence;
+            local_density::raise(&mut self.parts, &evidence, memory_rows(density));
+        }
+    }
+
+    /// Variances of the jumps of the velocity before each row that are beyond chance, looked for from `density` on, and the density beside them.
+    fn jumps(&self, density: f64) -> (Vec<f64>, f64) {
+        let (mut jumps, mut density) = (vec![0.0; self.time.len()], density);
+        for _ in 0..MOST_ROUNDS {
+            let memory = memory_rows(density);
+            if memory < LEAST_JUMP_MEMORY.value() {
+                break;
+            }
+            let tests = self.smooth(density, &jumps).jumps;
+            let found = velocity_jumps::beyond_chance(&tests, memory);
+            if found.is_empty() {
+                break;
+            }
+            for row in found {
+                jumps[row] = jumps[row].max(tests[row].size.powi(2));
+            }
+            density = self.most_likely_density(&jumps);
+        }
+        (jumps, density)
+    }
+
     /// With the variance of the jump of the velocity before each row.
     fn log_likelihood(&self, density: f64, jumps: &[f64]) -> f64 {
         let (mut state, mut covariance) = self.start();
         let mut sum = 0.0;
         for (row, jump) in jumps.iter().enumerate() {
             let (step, seen) = self.row(row);
-            predict(&mut state, &mut covariance, step, density);
+            predict(&mut state, &mut covariance, step, density * self.parts[row]);
             velocity_jumps::allow(&mut covariance, step, *jump);
-            let (innovation, variance) = (seen - state[0], covariance[0][0] + 1.0);
+            let (innovation, variance) = (seen - state[0], covariance[0][0] + self.variance(row));
             // The first rows find where the motion starts.
             if row >= 3 {
                 sum -= 0.5 * (variance.ln() + innovation * innovation / variance);
@@ -150,20 +239,20 @@ impl<'a> Rows<'a> {
         sum
     }
 
-    /// The motion, and what each row says of a jump of the velocity before it.
-    fn smooth(&self, density: f64, jumps: &[f64]) -> (Motion, Vec<JumpTest>) {
+    fn smooth(&self, density: f64, jumps: &[f64]) -> Smoothed {
         let count = self.time.len();
         let mut kept = Vec::with_capacity(count);
         let (mut state, mut covariance) = self.start();
         for (row, jump) in jumps.iter().enumerate() {
             let (step, seen) = self.row(row);
-            predict(&mut state, &mut covariance, step, density);
+            predict(&mut state, &mut covariance, step, density * self.parts[row]);
             velocity_jumps::allow(&mut covariance, step, *jump);
-            let (innovation, variance) = (seen - state[0], covariance[0][0] + 1.0);
+            let (innovation, variance) = (seen - state[0], covariance[0][0] + self.variance(row));
             kept.push(Kept { state, covariance, innovation, variance });
             correct(&mut state, &mut covariance, innovation, variance);
         }
-        let (mut motion, mut tests) = (Motion::zeros(count), vec![JumpTest::default(); count]);
+        let mut motion = Motion::zeros(count);
+        let (mut tests, mut evidence) = (vec![JumpTest::default(); count], vec![DensityEvidence::default(); count]);
         let (scale, rate) = (self.deviation, self.deviation / self.step);
         let (mut adjoint, mut information): (Vector, Matrix) = ([0.0; 3], [[0.0; 3]; 3]);
         for row in (0..count).rev() {
@@ -171,7 +260,10 @@ impl<'a> Rows<'a> {
             through_row(&mut adjoint, &mut information, covariance, *innovation, *variance);
             // Nothing is known before the first rows, from which a velocity could have jumped.
             if row >= 3 {
-                tests[row] = JumpTest::of(&adjoint, &information, self.row(row).0);
+                let (step, _) = self.row(row);
+                tests[row] = JumpTest::of(&adjoint, &information, step);
+                evidence[row] =
+                    DensityEvidence::of(&adjoint, &information, &process_noise(step, density * self.parts[row]));
             }
             let moved = product(covariance, &adjoint);
             let spread = |at: usize| {
@@ -188,13 +280,21 @@ impl<'a> Rows<'a> {
             let (step, _) = self.row(row);
             back_over(&mut adjoint, &mut information, step);
         }
-        (motion, tests)
+        Smoothed { motion, jumps: tests, evidence }
     }
 }
 
 /// The transition over `step` usual steps.
 fn transition(step: f64) -> Matrix {
     [[1.0, step, 0.5 * step * step], [0.0, 1.0, step], [0.0, 0.0, 1.0]]
+}
+
+/// Covariance of what a white third derivative of `density` adds over `step` usual steps.
+fn process_noise(step: f64, density: f64) -> Matrix {
+    let (s2, s3) = (step * step, step * step * step);
+    let unit =
+        [[s2 * s3 / 20.0, s2 * s2 / 8.0, s3 / 6.0], [s2 * s2 / 8.0, s3 / 3.0, s2 / 2.0], [s3 / 6.0, s2 / 2.0, step]];
+    unit.map(|row| row.map(|moment| density * moment))
 }
 
 fn predict(state: &mut Vector, covariance: &mut Matrix, step: f64, density: f64) {
@@ -204,13 +304,11 @@ fn predict(state: &mut Vector, covariance: &mut Matrix, step: f64, density: f64)
     let forward = transition(step);
     *state = product(&forward, state);
     let half = times(&forward, covariance);
-    let (s2, s3) = (step * step, step * step * step);
-    let noise =
-        [[s2 * s3 / 20.0, s2 * s2 / 8.0, s3 / 6.0], [s2 * s2 / 8.0, s3 / 3.0, s2 / 2.0], [s3 / 6.0, s2 / 2.0, step]];
+    let noise = process_noise(step, density);
     for row in 0..3 {
         for column in 0..3 {
             let carried: f64 = (0..3).map(|inner| half[row][inner] * forward[column][inner]).sum();
-            covariance[row][column] = carried + density * noise[row][column];
+            covariance[row][column] = carried + noise[row][column];
         }
     }
 }
@@ -260,6 +358,7 @@ fn times(left: &Matrix, right: &Matrix) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensors::Channel;
     use rand::SeedableRng as _;
     use rand_distr::{Distribution as _, Normal};
 
@@ -274,7 +373,7 @@ mod tests {
         let (size, pulse) = (5e-3, 12.0f64);
         let position: Vec<f64> =
             time.iter().map(|time| 0.3 + size * (pulse * time).sin() + normal.sample(&mut random)).collect();
-        let motion = smoothed(&time, &position, 4e-10);
+        let motion = smoothed(&EncoderReadings::white(&time, &position, 4e-10));
         let (mut place, mut speed, mut change) = (0.0, 0.0, 0.0);
         for (row, time) in time.iter().enumerate().take(3900).skip(100) {
             let truth = (0.3 + size * (pulse * time).sin(), size * pulse * (pulse * time).cos());
@@ -317,10 +416,11 @@ mod tests {
     fn a_velocity_may_jump_at_a_blow() {
         let (time, place, velocity, blows) = bouncing();
         let variance = 1e-8 / 12.0;
-        let rows = Rows::of(&time, &place, variance).unwrap();
+        let readings = EncoderReadings::white(&time, &place, variance);
+        let rows = Rows::of(&readings).unwrap();
         let none = vec![0.0; time.len()];
         let density = rows.most_likely_density(&none);
-        let (smeared, tests) = rows.smooth(density, &none);
+        let Smoothed { motion: smeared, jumps: tests, .. } = rows.smooth(density, &none);
         let mut found = velocity_jumps::beyond_chance(&tests, memory_rows(density));
         found.sort_unstable();
         assert_eq!(found, blows);
@@ -329,7 +429,7 @@ mod tests {
             let square = |row: usize| (motion.velocity[row] - velocity[row]).powi(2) / motion.velocity_variance[row];
             (50..1050).map(square).sum::<f64>() / 1000.0
         };
-        let (free, bound) = (weighed(&smoothed(&time, &place, variance)), weighed(&smeared));
+        let (free, bound) = (weighed(&smoothed(&readings)), weighed(&smeared));
         assert!(free < 1.6 && bound > 2.0 * free, "{free} and {bound}");
     }
 
@@ -337,9 +437,10 @@ mod tests {
     #[test]
     fn a_jump_is_tested_as_by_generalised_least_squares() {
         let (time, place, ..) = bouncing();
-        let rows = Rows::of(&time[..400], &place[..400], 1e-8 / 12.0).unwrap();
+        let readings = EncoderReadings::white(&time[..400], &place[..400], 1e-8 / 12.0);
+        let rows = Rows::of(&readings).unwrap();
         let (density, none) = (1e-3, vec![0.0; 400]);
-        let (_, tests) = rows.smooth(density, &none);
+        let tests = rows.smooth(density, &none).jumps;
         for jump in [60, 171, 333] {
             // Of a unit jump in the middle of the time before its row.
             let ramp = |row: usize| if row < jump { 0.0 } else { (row - jump) as f64 + 0.5 };
@@ -350,7 +451,7 @@ mod tests {
                 let (step, seen) = rows.row(row);
                 predict(&mut state, &mut covariance, step, density);
                 predict(&mut answer, &mut ignored, step, density);
-                let variance = covariance[0][0] + 1.0;
+                let variance = covariance[0][0] + rows.variance(row);
                 let (mine, unit) = (seen - state[0], ramp(row) - answer[0]);
                 product += mine * unit / variance;
                 square += unit * unit / variance;
@@ -363,6 +464,61 @@ mod tests {
             assert!((test.size - product / square).abs() < 1e-6 * test.size.abs(), "{test:?}");
             assert!((test.statistic - product * product / square).abs() < 1e-6 * test.statistic, "{test:?}");
         }
+    }
+
+    /// A tool that goes slowly and stands still, read in steps of 0.1 mm without noise: its errors are as large as the variances say. Rows whose rounding were white
+    /// would be known ten times better than they are.
+    #[test]
+    fn a_slow_motion_behind_a_coarse_encoder_is_known_as_well_as_it_says() {
+        // Halves of a cosine of 300 rows between places at which it stands for 500.
+        let places = [0.0, 1.13e-3, 0.42e-3, 2.71e-3, 1.87e-3, 0.09e-3, 0.96e-3, 1.55e-3, 1.5e-3];
+        let at = |row: usize| {
+            let part = 0.5 * (1.0 - f64::cos(std::f64::consts::PI * ((row % 800) as f64 / 300.0).min(1.0)));
+            places[row / 800] + part * (places[row / 800 + 1] - places[row / 800])
+        };
+        let time: Vec<f64> = (0..6000).map(|row| f64::from(row) * 1e-3).collect();
+        let position: Vec<f64> = (0..6000).map(|row| (at(row) / 1e-4).round() * 1e-4).collect();
+        let encoder = Channel { resolution: 1e-4, noise: 1e-4 / 12f64.sqrt() };
+        let weighed = |readings: &EncoderReadings| {
+            let motion = smoothed(readings);
+            let square = |row: usize| (motion.position[row] - at(row)).powi(2) / motion.position_variance[row];
+            (100..5900).map(square).sum::<f64>() / 5800.0
+        };
+        let crossings = weighed(&EncoderReadings::of(&time, &position, encoder));
+        let rows = weighed(&EncoderReadings::white(&time, &position, encoder.noise.powi(2)));
+        assert!((0.7..1.6).contains(&crossings) && rows > 10.0, "{crossings} and {rows}");
+    }
+
+    /// A motion whose third derivative is thirty times as large for a second as in the rest: its velocity is known there to within the root of two of what its variance says.
+    /// With the density of the whole trial alone its errors are more than that again.
+    #[test]
+    fn a_lively_stretch_is_known_as_well_as_it_says() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(23);
+        let normal = Normal::new(0.0, 1.0).unwrap();
+        let time: Vec<f64> = (0..9000).map(f64::from).collect();
+        let lively = 4000..5000;
+        let mut state: Vector = [0.0; 3];
+        let (mut velocity, mut seen) = (Vec::new(), Vec::new());
+        for row in 0..9000 {
+            state = product(&transition(1.0), &state);
+            // Drawn back slowly, over more rows than the smoother remembers: a lively stretch that ends far away would say more of its way there.
+            state[2] += normal.sample(&mut random) * if lively.contains(&row) { 0.1 } else { 0.003 };
+            state[2] -= 0.05 * state[2] + 0.002 * state[1] + 0.00003 * state[0];
+            velocity.push(state[1]);
+            seen.push(state[0] + normal.sample(&mut random));
+        }
+        let readings = EncoderReadings::white(&time, &seen, 1.0);
+        let mut rows = Rows::of(&readings).unwrap();
+        let none = vec![0.0; time.len()];
+        let weighed = |motion: &Motion| {
+            let square = |row: usize| (motion.velocity[row] - velocity[row]).powi(2) / motion.velocity_variance[row];
+            (4050..4950).map(square).sum::<f64>() / 900.0
+        };
+        let density = rows.most_likely_density(&none);
+        let whole = weighed(&rows.smooth(density, &none).motion);
+        rows.raise_where_lively(density);
+        let local = weighed(&rows.smooth(density, &none).motion);
+        assert!((0.5..2.0).contains(&local) && whole > 2.0 * local, "{local} and {whole}");
     }
 
     /// A stage that starts and stops within two rows, read a hundred times finer than it moves in one: the rows tell the velocity, and no jump is put into
@@ -381,12 +537,13 @@ mod tests {
                 place + normal.sample(&mut random)
             })
             .collect();
-        let rows = Rows::of(&time, &seen, 1e-4).unwrap();
+        let readings = EncoderReadings::white(&time, &seen, 1e-4);
+        let rows = Rows::of(&readings).unwrap();
         let none = vec![0.0; time.len()];
         let density = rows.most_likely_density(&none);
-        let (plain, tests) = rows.smooth(density, &none);
+        let tests = rows.smooth(density, &none).jumps;
         assert!(!velocity_jumps::beyond_chance(&tests, memory_rows(density)).is_empty());
-        assert_eq!(smoothed(&time, &seen, 1e-4).velocity, plain.velocity);
+        assert_eq!(rows.jumps(density), (none, density));
     }
 
     /// Of forty motions whose third derivative is white none has a jump: in a hundred one or less is expected.
@@ -405,10 +562,11 @@ mod tests {
                     state[0] + normal.sample(&mut random)
                 })
                 .collect();
-            let rows = Rows::of(&time, &place, 1.0).unwrap();
+            let readings = EncoderReadings::white(&time, &place, 1.0);
+            let rows = Rows::of(&readings).unwrap();
             let none = vec![0.0; time.len()];
             let density = rows.most_likely_density(&none);
-            let found = velocity_jumps::beyond_chance(&rows.smooth(density, &none).1, memory_rows(density));
+            let found = velocity_jumps::beyond_chance(&rows.smooth(density, &none).jumps, memory_rows(density));
             assert!(found.is_empty(), "{seed}: {found:?}");
         }
     }

@@ -1,9 +1,10 @@
 //! A recording as the contact's model sees it: the smoothed motion of the tool and the force beside it.
 
-use super::motion::{self, Motion};
+use super::encoder_readings::EncoderReadings;
+use super::motion;
 use crate::diagnose::signals::outliers::interpolate_outliers;
 use crate::recording::Recording;
-use crate::sensors::{Channel, DITHER_FRACTION, Figures};
+use crate::sensors::{DITHER_FRACTION, Figures};
 
 /// One trial. All columns are of equal length.
 #[derive(Debug, Clone)]
@@ -57,9 +58,7 @@ impl ContactTrial {
         let origin = recording.time.first().copied()?;
         let since: Vec<f64> = recording.time.iter().map(|time| time - origin).collect();
         let encoder_steps = encoder_steps(&position, figures.position.resolution, every.max(1));
-        let noise = figures.position.noise.max(figures.position.resolution / 12f64.sqrt());
-        let mut smooth = motion::smoothed(&since, &position, noise * noise);
-        stuck_rounding(&mut smooth, figures.position, recording.period());
+        let smooth = motion::smoothed(&EncoderReadings::of(&since, &position, figures.position));
         let every = every.max(1);
         let mean = |values: &[f64]| -> Vec<f64> {
             values.chunks_exact(every).map(|rows| rows.iter().sum::<f64>() / every as f64).collect()
@@ -115,21 +114,4 @@ fn encoder_steps(readings: &[f64], resolution: f64, every: usize) -> Vec<i64> {
         return Vec::new();
     }
     readings.chunks_exact(every).map(|rows| (rows[0] / resolution).round() as i64).collect()
-}
-
-/// Adds to the position's variance what smoothing cannot take of an encoder's rounding: where neither noise nor motion carries the
-/// reading over a step, neighbouring rows are wrong by the same part of it (B. Widrow, I. Kollár, *Quantization Noise*, 2008, ch. 5).
-fn stuck_rounding(motion: &mut Motion, encoder: Channel, step_s: f64) {
-    let rounding = encoder.resolution * encoder.resolution / 12.0;
-    let shake = (encoder.noise * encoder.noise - rounding).max(0.0);
-    if rounding == 0.0 || shake.sqrt() > DITHER_FRACTION * encoder.resolution {
-        return;
-    }
-    let all = (shake + rounding).max(f64::MIN_POSITIVE);
-    for (variance, velocity) in motion.position_variance.iter_mut().zip(&motion.velocity) {
-        // A mean over 1 / `part` rows holds as many independent errors as steps are crossed in their time.
-        let part = *variance / all;
-        let rows_a_step = (encoder.resolution / (velocity.abs() * step_s).max(f64::MIN_POSITIVE)).max(1.0);
-        *variance = part * shake + (part * rows_a_step).min(1.0) * rounding;
-    }
 }
