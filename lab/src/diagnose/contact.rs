@@ -43,6 +43,7 @@ mod simplicity;
 pub mod spline;
 #[cfg(test)]
 pub mod testing;
+mod third_integral;
 pub mod tones;
 pub mod trial;
 pub mod variance;

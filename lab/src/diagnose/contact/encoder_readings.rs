@@ -25,13 +25,17 @@ pub struct EncoderReadings {
     pub step_s: f64,
 }
 
-/// Part of a step by which a reading may be off the encoder's grid, and the share of rows that may be, as interpolated ones are.
+/// Part of a step by which a reading may be off the encoder's grid, as far as a file's last digit takes it, and the share of rows that may be farther, as
+/// interpolated ones are. Of ten rigs behind 0.1 mm no error changes at ten times it; at a tenth of it files of few digits lose their crossings, and the position's
+/// errors grow by 7 %.
 const OFF_GRID: f64 = 0.01;
 
-/// Part of a step to which the place of an encoder's line is known at the best.
+/// Part of a step to which the place of an encoder's line is known at the best: no line is where it should be. On the same rigs no error changes from a tenth of it
+/// to ten times it, and at a hundred times it none of position or velocity by more than a hundredth.
 const LINE_PLACE: f64 = 1e-3;
 
-/// Usual times between rows that may lie between two readings of which the change is taken for a crossing.
+/// Usual times between rows that may lie between two readings of which the change is taken for a crossing: between one, of rows that follow each other, and two, of
+/// which a row is lost.
 const LONGEST_CROSSING: f64 = 1.5;
 
 impl EncoderReadings {

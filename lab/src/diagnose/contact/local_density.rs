@@ -5,7 +5,7 @@
 //! *MM algorithms for variance components models*, J. Comput. Graph. Stat. 28 (2019) 350); here the sums are those of the rows about each row. Only what is livelier is
 //! raised: that a tool moves less than an encoder shows cannot be read from it.
 
-use super::motion::{Matrix, Vector};
+use super::third_integral::{Matrix, Vector};
 
 /// What the rows say of the density of the process noise before one of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -9,6 +9,7 @@
 use super::criteria::LEAST_JUMP_MEMORY;
 use super::encoder_readings::EncoderReadings;
 use super::local_density::{self, DensityEvidence};
+use super::third_integral::{Matrix, Vector, back_over, correct, predict, process_noise, product, through_row};
 use super::velocity_jumps::{self, JumpTest};
 use crate::diagnose::golden_section::least_between;
 
@@ -57,9 +58,6 @@ impl Motion {
         }
     }
 }
-
-pub(super) type Vector = [f64; 3];
-pub(super) type Matrix = [[f64; 3]; 3];
 
 /// The motion behind `readings`, at the instants of the recording's rows.
 #[must_use]
@@ -284,79 +282,9 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The transition over `step` usual steps.
-fn transition(step: f64) -> Matrix {
-    [[1.0, step, 0.5 * step * step], [0.0, 1.0, step], [0.0, 0.0, 1.0]]
-}
-
-/// Covariance of what a white third derivative of `density` adds over `step` usual steps.
-fn process_noise(step: f64, density: f64) -> Matrix {
-    let (s2, s3) = (step * step, step * step * step);
-    let unit =
-        [[s2 * s3 / 20.0, s2 * s2 / 8.0, s3 / 6.0], [s2 * s2 / 8.0, s3 / 3.0, s2 / 2.0], [s3 / 6.0, s2 / 2.0, step]];
-    unit.map(|row| row.map(|moment| density * moment))
-}
-
-fn predict(state: &mut Vector, covariance: &mut Matrix, step: f64, density: f64) {
-    if step == 0.0 {
-        return;
-    }
-    let forward = transition(step);
-    *state = product(&forward, state);
-    let half = times(&forward, covariance);
-    let noise = process_noise(step, density);
-    for row in 0..3 {
-        for column in 0..3 {
-            let carried: f64 = (0..3).map(|inner| half[row][inner] * forward[column][inner]).sum();
-            covariance[row][column] = carried + noise[row][column];
-        }
-    }
-}
-
-fn correct(state: &mut Vector, covariance: &mut Matrix, innovation: f64, variance: f64) {
-    let gain: Vector = std::array::from_fn(|row| covariance[row][0] / variance);
-    let seen = covariance[0];
-    for row in 0..3 {
-        state[row] += gain[row] * innovation;
-        for column in 0..3 {
-            covariance[row][column] -= gain[row] * seen[column];
-        }
-    }
-}
-
-/// The adjoint state before a row from that behind it: (I - K H)^T and what the row itself says.
-fn through_row(adjoint: &mut Vector, information: &mut Matrix, covariance: &Matrix, innovation: f64, variance: f64) {
-    let gain: Vector = std::array::from_fn(|row| covariance[row][0] / variance);
-    let kept: Matrix = std::array::from_fn(|row| {
-        std::array::from_fn(|column| f64::from(row == column) - if column == 0 { gain[row] } else { 0.0 })
-    });
-    let turned: Matrix = std::array::from_fn(|row| std::array::from_fn(|column| kept[column][row]));
-    *adjoint = product(&turned, adjoint);
-    adjoint[0] -= innovation / variance;
-    *information = times(&times(&turned, information), &kept);
-    information[0][0] += 1.0 / variance;
-}
-
-/// The same over the time before a row.
-fn back_over(adjoint: &mut Vector, information: &mut Matrix, step: f64) {
-    let forward = transition(step);
-    let turned: Matrix = std::array::from_fn(|row| std::array::from_fn(|column| forward[column][row]));
-    *adjoint = product(&turned, adjoint);
-    *information = times(&times(&turned, information), &forward);
-}
-
-fn product(matrix: &Matrix, vector: &Vector) -> Vector {
-    std::array::from_fn(|row| matrix[row].iter().zip(vector).map(|(a, b)| a * b).sum())
-}
-
-fn times(left: &Matrix, right: &Matrix) -> Matrix {
-    std::array::from_fn(|row| {
-        std::array::from_fn(|column| (0..3).map(|inner| left[row][inner] * right[inner][column]).sum())
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::third_integral::transition;
     use super::*;
     use crate::sensors::Channel;
     use rand::SeedableRng as _;

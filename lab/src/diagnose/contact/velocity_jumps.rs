@@ -6,7 +6,7 @@
 //! (1998) 796; A. S. Willsky, H. L. Jones, IEEE Trans. Autom. Control 21 (1976) 108).
 
 use super::criteria::FALSE_JUMP;
-use super::motion::{Matrix, Vector};
+use super::third_integral::{Matrix, Vector};
 
 /// What the rows from one on say of a jump before it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
