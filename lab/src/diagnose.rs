@@ -5,7 +5,6 @@
 //! what is left. [`report`] writes it down; [`experiment`] says which experiment would separate alternatives.
 
 pub mod acting_force;
-pub mod bound;
 pub mod channels;
 pub mod check;
 pub mod clipped_force;
@@ -15,7 +14,6 @@ pub mod drive;
 pub mod ends;
 pub mod evidence;
 pub mod experiment;
-pub mod golden_section;
 pub mod interval;
 pub mod jackknife;
 pub mod linalg;
@@ -28,8 +26,6 @@ pub mod report;
 pub mod signals;
 pub mod so_far;
 pub mod term;
-pub mod threshold;
-pub mod threshold_margin;
 pub mod thresholds;
 pub mod tool_position;
 pub mod verdict;
@@ -42,9 +38,11 @@ use signals::pauses;
 pub use signals::prepare::sensed;
 
 use crate::error::InputError;
+use crate::motion;
 use crate::recording::Recording;
 use crate::rig::Rig;
 use crate::sensors::Figures;
+use crate::threshold::Threshold;
 use drive::outcome::Outcome;
 pub use report::diagnosis::Diagnosis;
 use report::diagnosis::PlotData;
@@ -52,8 +50,8 @@ use report::merge::{self, Report};
 use report::{contact_report, drive_report};
 
 /// Every threshold of the diagnosis that is a number on a scale.
-pub fn thresholds() -> impl Iterator<Item = threshold::Threshold> {
-    let channels = contact::criteria::ALL.iter().chain(drive::criteria::ALL);
+pub fn thresholds() -> impl Iterator<Item = Threshold> {
+    let channels = contact::criteria::ALL.iter().chain(drive::criteria::ALL).chain(motion::THRESHOLDS);
     channels.copied().chain(thresholds::all())
 }
 

@@ -1,5 +1,6 @@
 //! The host tool of palpate, as a library so that its binaries and tests share it.
 
+pub mod bound;
 pub mod calibrate;
 pub mod catalogue;
 pub mod challenge;
@@ -13,11 +14,13 @@ pub mod error;
 pub mod experiment_design;
 pub mod export;
 pub mod fleet;
+pub mod golden_section;
 pub mod interrupt;
 pub mod investigate;
 pub mod joints;
 pub mod listen;
 pub mod look;
+pub mod motion;
 pub mod outfile;
 pub mod output_paths;
 pub mod own_program;
@@ -37,5 +40,7 @@ pub mod schema;
 pub mod sensors;
 pub mod simulate;
 pub mod terminal;
+pub mod threshold;
+pub mod threshold_margin;
 pub mod threshold_sweep;
 pub mod tools;

@@ -15,12 +15,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::challenge::case_list::sample;
 use crate::challenge::run_diagnosis::run_command;
-use crate::diagnose::threshold::Threshold;
-use crate::diagnose::threshold_margin::ThresholdMargin;
 use crate::diagnose::thresholds;
 use crate::error::UsageError;
 use crate::experiment_design::explanation::UNKNOWN;
 use crate::own_program;
+use crate::threshold::Threshold;
+use crate::threshold_margin::ThresholdMargin;
 
 /// Beside a case: between which factors each threshold changes nothing in it.
 const MARGINS: &str = "margins.json";

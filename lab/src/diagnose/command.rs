@@ -15,8 +15,6 @@ use crate::diagnose::report::diagnosis::{Diagnosis, Run};
 use crate::diagnose::report::html;
 use crate::diagnose::report::model_file::model_file;
 use crate::diagnose::report::recorded_motion::runnable;
-use crate::diagnose::threshold::vary;
-use crate::diagnose::threshold_margin::{ThresholdMargin, note_margins, noted_margins};
 use crate::error::{InputError, UsageError};
 use crate::investigate::separating_trial::separating_trial;
 use crate::outfile::OutFile;
@@ -27,6 +25,8 @@ use crate::recording::Recording;
 use crate::replay::REPLAY_PAGE;
 use crate::rig::Rig;
 use crate::terminal::printable;
+use crate::threshold::vary;
+use crate::threshold_margin::{ThresholdMargin, note_margins, noted_margins};
 
 /// Find where simulation and recordings differ, and which physics is missing
 #[derive(Debug, Clone, Args)]

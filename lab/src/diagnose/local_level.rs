@@ -4,9 +4,9 @@
 //! of a density that is fitted by maximum likelihood, and rows `level + e` of known variance at any instants. Kalman's filter and the
 //! smoother of H. E. Rauch, F. Tung and C. T. Striebel (1965).
 
-use super::golden_section::least_between;
 use super::linalg::energy;
 use super::median::median;
+use crate::golden_section::least_between;
 
 /// Precision of the logarithm of the density.
 const LN_PRECISION: f64 = 0.1;

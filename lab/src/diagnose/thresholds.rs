@@ -4,7 +4,7 @@
 //! simulated recordings. "1" is a ratio or a share, "count" a number of things. Those of the two channels stand in `contact/criteria.rs` and
 //! `drive/criteria.rs`.
 
-use super::threshold::Threshold;
+use crate::threshold::Threshold;
 
 /// Those of them that are numbers on a scale.
 pub fn all() -> impl Iterator<Item = Threshold> {
@@ -27,7 +27,7 @@ pub fn all() -> impl Iterator<Item = Threshold> {
 
 /// Of `check/checked_trial`.
 pub mod check_checked_trial {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_checked_trial";
         /// Share of the usual speed that noise may leave in it.
@@ -41,7 +41,7 @@ pub mod check_checked_trial {
 
 /// Of `check/clock`.
 pub mod check_clock {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_clock";
         /// Ratio of two periods that makes two rates.
@@ -70,7 +70,7 @@ pub mod check_clock {
 
 /// Of `check/contact`.
 pub mod check_contact {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_contact";
         /// Correlation of force and depth that speaks for itself.
@@ -89,7 +89,7 @@ pub mod check_contact {
 
 /// Of `check/drive`.
 pub mod check_drive {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_drive";
         /// Correlation of what is left of effort and acceleration that speaks for itself.
@@ -109,7 +109,7 @@ pub mod check_drive {
 
 /// Of `check/excitation`.
 pub mod check_excitation {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_excitation";
         /// Ratio of speeds below which they are one speed.
@@ -144,7 +144,7 @@ pub mod check_excitation {
 
 /// Of `check/position_steps`.
 pub mod check_position_steps {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_position_steps";
         /// A leap is so many times what a row moves at most, ...
@@ -166,7 +166,7 @@ pub mod check_position_steps {
 
 /// Of `check/stuck_channel`.
 pub mod check_stuck_channel {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_stuck_channel";
         /// White noise over the sensor's step from which neighbouring rows differ.
@@ -190,7 +190,7 @@ pub mod check_stuck_channel {
 
 /// Of `check/units`.
 pub mod check_units {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "check_units";
         /// By how much a nominal stiffness may be off before a factor is no longer that factor.
@@ -208,7 +208,7 @@ pub mod dequantize {
 
 /// Of `signals/derivative_filter`.
 pub mod derivative_filter {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "derivative_filter";
         /// Widths after which the Gaussian ends: 3e-4 of its peak.
@@ -218,7 +218,7 @@ pub mod derivative_filter {
 
 /// Of `signals/mains_tone`.
 pub mod mains_tone {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "mains_tone";
         /// Share by which mains may be off their frequency.
@@ -239,7 +239,7 @@ pub mod mains_tone {
 
 /// Of `signals/pauses`.
 pub mod pauses {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "pauses";
         /// Time in gaps, over the time that rows hold, from which a trial is divided: the even clock has eleven times the rows at the most.
@@ -257,7 +257,7 @@ pub mod prepare {
 
 /// Of `signals/uniform_trial`.
 pub mod uniform_trial {
-    use crate::diagnose::threshold::thresholds;
+    use crate::threshold::thresholds;
 
     thresholds! { "uniform_trial";
         /// Periods without a row that make a gap.

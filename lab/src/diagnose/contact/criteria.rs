@@ -1,7 +1,7 @@
 //! When a law counts as told by the recordings. Each number with its meaning and origin.
 
-use crate::diagnose::threshold::thresholds;
 use crate::effects::MAINS_TOLERANCE;
+use crate::threshold::thresholds;
 
 thresholds! { "contact";
     /// Log likelihood that a larger model has to gain, nats: one in e^10 by chance for one comparison, e^5 for all [`COMPARISONS`].
@@ -97,12 +97,6 @@ thresholds! { "contact";
     LEAST_PART_OF_OWN_WAVE = 0.25, "1", chosen;
     /// Size of a line of the tool's motion over that of what lies beside it, in root mean square: of noise one in e^9, 8000, is larger.
     OWN_LINE = 3.0, "1", derived;
-    /// Probability that a motion whose velocity does not jump is taken for one that does, for all rows of a trial. Chosen: with 0.1 or 0.001 the least jump
-    /// that is seen is a tenth smaller or larger.
-    FALSE_JUMP = 0.01, "1", chosen;
-    /// Rows that the smoother of the motion remembers at the least where its velocity may jump. With fewer the rows themselves tell the velocity, and a change
-    /// within one of them is not told from one over two, as of a drive that starts quickly.
-    LEAST_JUMP_MEMORY = 2.0, "rows", derived;
     /// Part by which a line of the spectrum may be off the frequency that it is known by: that of the mains.
     LINE_TOLERANCE = MAINS_TOLERANCE, "1", cited;
 }

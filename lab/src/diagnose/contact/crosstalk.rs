@@ -6,8 +6,8 @@ use super::fit::{Effort, Fit};
 use super::rest::Rest;
 use super::search::Search;
 use super::trial::ContactTrial;
-use crate::diagnose::golden_section::least_between;
 use crate::diagnose::linalg::{dot, solve};
+use crate::golden_section::least_between;
 
 /// The effort that a force reading holds: `reading = F + part u`, where `u` is the effort, by a common ground or the frame, or what is left of its
 /// steps after `memory_s`, by a capacity: `u` falls towards zero with that time constant and follows each step of the effort at once.

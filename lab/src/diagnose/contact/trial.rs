@@ -1,8 +1,7 @@
 //! A recording as the contact's model sees it: the smoothed motion of the tool and the force beside it.
 
-use super::encoder_readings::EncoderReadings;
-use super::motion;
 use crate::diagnose::signals::outliers::interpolate_outliers;
+use crate::motion::{self, encoder_readings::EncoderReadings};
 use crate::recording::Recording;
 use crate::sensors::{DITHER_FRACTION, Figures};
 

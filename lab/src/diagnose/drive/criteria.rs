@@ -1,6 +1,6 @@
 //! When a term is worth having: every number that decides, with its meaning and where it comes from.
 
-use crate::diagnose::threshold::thresholds;
+use crate::threshold::thresholds;
 
 thresholds! { "drive";
     /// Gain of log likelihood that a term needs, nats, and more for each value: Schwarz's criterion asks (ln rows) / 2 a value, 5.3 at

@@ -4,7 +4,7 @@ use super::input::Inputs;
 use super::likelihood::Data;
 use super::model::Model;
 use super::noise::Noise;
-use crate::diagnose::golden_section::LEFT_OUT;
+use crate::golden_section::LEFT_OUT;
 
 /// Half the distance, in ln of the density, within which its likeliest value is looked for at first, and by how much further where it is not there.
 const FIRST_SPAN: f64 = 3.0;

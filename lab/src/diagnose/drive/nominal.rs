@@ -1,6 +1,5 @@
 //! The law that a rig file states of its drive, and its refitted values.
 
-use super::super::bound::Bound;
 use super::candidates::building_up;
 use super::criteria::{LATEST_ROWS, LATEST_S, LOWEST_BAND_HZ};
 use super::fit::{Effort, Fit, fit};
@@ -14,6 +13,7 @@ use super::noise::Noise;
 use super::scales::Scales;
 use super::term::Term;
 use super::trial::DriveTrial;
+use crate::bound::Bound;
 use crate::effects::Resolved;
 
 /// What a rig file says of a drive.

@@ -14,8 +14,8 @@ use super::likelihood::Data;
 use super::selection::Search;
 use super::tone::{Tone, loudest_tone};
 use super::trial::DriveTrial;
-use crate::diagnose::golden_section::least_between;
 use crate::diagnose::linalg::solve;
+use crate::golden_section::least_between;
 
 /// Rounds of tone and law: what a wrong law makes of the tone, and the smoothed disturbance leaves of it, goes in the next.
 const ROUNDS: usize = 3;

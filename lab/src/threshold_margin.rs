@@ -56,12 +56,12 @@ pub fn noted_margins() -> BTreeMap<&'static str, ThresholdMargin> {
 }
 
 /// Notes that a number `ratio` times the nominal threshold was compared with it.
-pub(super) fn note_comparison(name: &'static str, ratio: f64) {
+pub(crate) fn note_comparison(name: &'static str, ratio: f64) {
     note(name, |margin| margin.compared(ratio));
 }
 
 /// Notes that the threshold was reckoned with: what any factor changes is not known.
-pub(super) fn note_use(name: &'static str) {
+pub(crate) fn note_use(name: &'static str) {
     note(name, |margin| margin.compared(1.0));
 }
 

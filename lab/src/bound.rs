@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::threshold::Threshold;
-use super::threshold_margin::{note_comparison, note_use};
+use crate::threshold::Threshold;
+use crate::threshold_margin::{note_comparison, note_use};
 
 /// `rest + part`, with a threshold in `part` as a factor. What is compared with it says how far the threshold could be moved.
 #[derive(Debug, Clone, Copy)]
@@ -139,9 +139,9 @@ impl Sub<Bound> for f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::threshold::Origin;
-    use super::super::threshold_margin::{ThresholdMargin, note_margins, noted_margins};
     use super::*;
+    use crate::threshold::Origin;
+    use crate::threshold_margin::{ThresholdMargin, note_margins, noted_margins};
 
     fn threshold(name: &'static str) -> Threshold {
         Threshold { name, nominal: 2.0, unit: "1", meaning: " A ratio.", origin: Origin::Chosen }

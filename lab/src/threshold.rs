@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
-use super::bound::Bound;
-use super::threshold_margin::{note_comparison, note_use};
+use crate::bound::Bound;
 use crate::error::UsageError;
+use crate::threshold_margin::{note_comparison, note_use};
 
 /// Where a tuned number comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,7 +57,7 @@ impl Threshold {
         self.varied()
     }
 
-    pub(super) fn varied(self) -> f64 {
+    pub(crate) fn varied(self) -> f64 {
         match VARIED.get() {
             Some((name, factor)) if *name == self.name => self.nominal * factor,
             _ => self.nominal,
@@ -146,21 +146,21 @@ macro_rules! thresholds {
         $(
             $(#[doc = $line])+
             #[doc = concat!("\nUnit: ", $unit, "; ", stringify!($origin), ".")]
-            pub const $name: $crate::diagnose::threshold::Threshold = $crate::diagnose::threshold::Threshold {
+            pub const $name: $crate::threshold::Threshold = $crate::threshold::Threshold {
                 name: concat!($room, ".", stringify!($name)),
                 nominal: $value,
                 unit: $unit,
                 meaning: concat!($($line),+),
-                origin: $crate::diagnose::threshold::thresholds!(@ $origin),
+                origin: $crate::threshold::thresholds!(@ $origin),
             };
         )+
 
         /// All of this room.
-        pub const ALL: &[$crate::diagnose::threshold::Threshold] = &[$($name),+];
+        pub const ALL: &[$crate::threshold::Threshold] = &[$($name),+];
     };
-    (@ derived) => { $crate::diagnose::threshold::Origin::Derived };
-    (@ cited) => { $crate::diagnose::threshold::Origin::Cited };
-    (@ chosen) => { $crate::diagnose::threshold::Origin::Chosen };
+    (@ derived) => { $crate::threshold::Origin::Derived };
+    (@ cited) => { $crate::threshold::Origin::Cited };
+    (@ chosen) => { $crate::threshold::Origin::Chosen };
 }
 pub(crate) use thresholds;
 

@@ -3,15 +3,25 @@
 //! The motion is a third integral of white noise, x''' = w, seen by an encoder whose errors are independent from row to row, as [`EncoderReadings`] has them. The Kalman filter
 //! and the fixed-interval smoother (A. E. Bryson, M. Frazier, 1963) are exact for rows at any instants. The density of w is the most likely one, so
 //! that no bandwidth has to be chosen. Where a blow changes the velocity within a row, w is not white: there the velocity is free to jump
-//! ([`super::velocity_jumps`]), so that the density of the whole trial is not that of its blows; where the motion is livelier than in the rest of the trial, its
-//! density is greater ([`super::local_density`]).
+//! ([`velocity_jumps`]), so that the density of the whole trial is not that of its blows; where the motion is livelier than in the rest of the trial, its
+//! density is greater ([`local_density`]).
 
-use super::criteria::LEAST_JUMP_MEMORY;
-use super::encoder_readings::EncoderReadings;
-use super::local_density::{self, DensityEvidence};
-use super::third_integral::{Matrix, Vector, back_over, correct, predict, process_noise, product, through_row};
-use super::velocity_jumps::{self, JumpTest};
-use crate::diagnose::golden_section::least_between;
+mod criteria;
+pub mod encoder_readings;
+mod local_density;
+mod third_integral;
+mod velocity_jumps;
+
+use crate::golden_section::least_between;
+pub use criteria::ALL as THRESHOLDS;
+use criteria::LEAST_JUMP_MEMORY;
+use encoder_readings::EncoderReadings;
+use local_density::DensityEvidence;
+use third_integral::{Matrix, Vector, back_over, correct, predict, process_noise, product, through_row};
+use velocity_jumps::JumpTest;
+
+/// Rows from which a motion is smoothed: three of them find where it starts, with which velocity and acceleration. Fewer stand as they are, at rest.
+pub const FEWEST_ROWS: usize = 5;
 
 /// A smoothed motion, one entry a row.
 #[derive(Debug, Clone, Default)]
@@ -145,7 +155,7 @@ const MOST_ROUNDS: usize = 6;
 impl<'a> Rows<'a> {
     fn of(readings: &'a EncoderReadings) -> Option<Self> {
         let EncoderReadings { time, position, variance, is_row, step_s, .. } = readings;
-        if is_row.iter().filter(|is_row| **is_row).count() < 5 {
+        if is_row.iter().filter(|is_row| **is_row).count() < FEWEST_ROWS {
             return None;
         }
         let rows = variance.iter().zip(is_row).filter_map(|(variance, is_row)| is_row.then_some(*variance));
@@ -284,7 +294,7 @@ impl<'a> Rows<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::third_integral::transition;
+    use super::third_integral::transition;
     use super::*;
     use crate::sensors::Channel;
     use rand::SeedableRng as _;
