@@ -50,8 +50,10 @@ impl Figures {
 pub const DITHER_FRACTION: f64 = 0.5;
 
 impl Channel {
-    /// A given noise is that before rounding, a measured one already contains it.
-    fn of(time: &[f64], values: &[f64], resolution: Option<f64>, noise: Option<f64>) -> Self {
+    /// The channel that reads `values` at `time`, with the `resolution` and `noise` that are given and the rest measured. A given noise is that before rounding, a
+    /// measured one already contains it.
+    #[must_use]
+    pub fn of(time: &[f64], values: &[f64], resolution: Option<f64>, noise: Option<f64>) -> Self {
         let resolution = resolution.unwrap_or_else(|| quantum(values));
         let rounding = resolution / 12f64.sqrt();
         let noise = match noise {

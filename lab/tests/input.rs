@@ -1,5 +1,7 @@
 //! Rig files and recordings as users bring them: good, odd and broken.
 
+use std::f64::consts::PI;
+
 use std::path::Path;
 
 use palpate_lab::recording::Recording;
@@ -205,7 +207,9 @@ const MOTOR: &str = "[drive]\nmass_kg = 1\nviscous_n_s_m = 0\n[effort]\n";
 fn motor_trial() -> String {
     let row = |k: u32| {
         let t = f64::from(k) * 0.01;
-        format!("{t},{},{},{},{},{}\n", t * t, 3.0 * t, 0.1 * t, 0.01 * t, t * t + 0.5 * t)
+        // On no encoder's grid.
+        let place = t * t + t / PI;
+        format!("{t},{place},{},{},{},{}\n", 3.0 * t, 0.1 * t, 0.01 * t, place + 0.5 * t)
     };
     "t_s,position_m,current_A,voltage_V,duty,reference_m\n".to_owned() + &(0..100).map(row).collect::<String>()
 }
@@ -224,10 +228,10 @@ fn an_effort_that_is_not_recorded_is_computed_as_the_rig_says() {
     };
     is("model = \"current\"\nmotor_constant_n_a = -2", |t| -6.0 * t);
     is("model = \"voltage\"\nmotor_constant_n_a = 2\nback_emf_v_s_m = 0.3\nresistance_ohm = 0.5", |t| {
-        2.0 * (0.1 - 0.6) * t / 0.5
+        2.0 * (0.1 * t - 0.3 * (2.0 * t + 1.0 / PI)) / 0.5
     });
     is("model = \"duty\"\nsupply_v = 10\nmotor_constant_n_a = 2\nback_emf_v_s_m = 0.3\nresistance_ohm = 0.5", |t| {
-        2.0 * (0.1 - 0.6) * t / 0.5
+        2.0 * (0.1 * t - 0.3 * (2.0 * t + 1.0 / PI)) / 0.5
     });
     is("model = \"pd\"\nproportional_n_m = 4\nderivative_n_s_m = 3", |t| 4.0 * 0.5 * t + 3.0 * 0.5);
     is("model = \"current\"\nmotor_constant_n_a = 2\ncolumn = \"voltage_V\"", |t| 0.2 * t);

@@ -152,7 +152,7 @@ pub fn into_recording(channels: Vec<(Role, Vec<f64>)>, rig: &Rig, scope: Scope) 
         && recording.effort.is_none()
         && let Some(law) = &rig.effort
     {
-        recording.effort = computed_effort::effort(law, &recording, input.as_deref());
+        recording.effort = computed_effort::effort(law, rig, &recording, input.as_deref());
     }
     recording
 }
