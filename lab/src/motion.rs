@@ -8,9 +8,9 @@
 
 mod criteria;
 pub mod encoder_readings;
-mod local_density;
+pub mod local_density;
 mod third_integral;
-mod velocity_jumps;
+pub mod velocity_jumps;
 
 use crate::golden_section::least_between;
 pub use criteria::ALL as THRESHOLDS;
