@@ -12,6 +12,7 @@ use super::judgement::{acts_at_a_distance, is_notable, takes_too_little, verdict
 use super::learned::{LearnedCurve, learned};
 use super::model::index;
 use super::nominal::{NominalContact, law_of, nominal_fit};
+use super::parasitic_force::ParasiticForce;
 use super::rest::Rest;
 use super::search::Search;
 use super::selection::Chosen;
@@ -50,6 +51,9 @@ pub struct Outcome {
     pub alternatives: Vec<Alternative>,
     /// What of the effort the force reading seems to hold, where that is likelier than the effects that were found.
     pub crosstalk: Option<Crosstalk>,
+    /// A force of free motion, where the contact is likelier without it. No effect of the list is that; trials, laws and residuals are those
+    /// of the force without it.
+    pub parasitic: Option<ParasiticForce>,
     /// For what is left beside what is named, where that is notable: a learned element, where unseen rows pay for one.
     pub learned: Option<LearnedCurve>,
     /// Measured less predicted force by the rig file as given, by refitted values, and with the named effects, on rows that no fit saw, a
@@ -93,25 +97,78 @@ pub fn identify(
     if rows < FEWEST_ROWS || trials.iter().any(|trial| trial.len() < 4) {
         return None;
     }
-    let (_, start) = law_of(&trials, rig);
-    say("the contact: nominal values");
-    let first = nominal_fit(&Data::new(&trials), rig);
-    let data = Data::new(&trials).weighed(&first);
-    let nominal = data.fit(&first.model, &first.values, Effort::FULL);
-    let coarse = Data::new(coarse).weighed(&nominal);
-    let mut search = Search { data, coarse, nominal, circumstances };
-    let chosen = search.run(say);
-    say("the contact: what is left");
-    // Beside an effect the tool's free motion may hold what that effect does not say, as interference under an atomic force microscope.
-    // What is left beside a zero that wanders is that zero's, where free motion holds as much of it.
-    if chosen.fit.model == search.nominal.model || wanders(&chosen.fit) {
-        search.data = search.data.heard_in_free_motion(&chosen.fit);
+    let given = Given { rig, circumstances: &circumstances, say };
+    let alone = given.searched(&trials, coarse);
+    let (search, chosen) = &alone;
+    let force = ParasiticForce::found(&search.data, [&chosen.fit, &search.nominal], rig);
+    let beside = force.and_then(|force| given.beside(force, [&trials, coarse], &chosen.fit));
+    Some(beside.unwrap_or_else(|| given.concluded(alone)))
+}
+
+/// What a contact is identified by beside its trials.
+struct Given<'a> {
+    rig: &'a NominalContact,
+    circumstances: &'a Circumstances,
+    say: &'a dyn Fn(&str),
+}
+
+impl Given<'_> {
+    /// The effects that `trials` ask for, and the search that found them.
+    fn searched<'a>(&self, trials: &'a [ContactTrial], coarse: &'a [ContactTrial]) -> (Search<'a>, Chosen) {
+        (self.say)("the contact: nominal values");
+        let first = nominal_fit(&Data::new(trials), self.rig);
+        let data = Data::new(trials).weighed(&first);
+        let nominal = data.fit(&first.model, &first.values, Effort::FULL);
+        let coarse = Data::new(coarse).weighed(&nominal);
+        let mut search = Search { data, coarse, nominal, circumstances: self.circumstances.clone() };
+        let chosen = search.run(self.say);
+        (search, chosen)
     }
-    let mut outcome = judged(&search, chosen, &start);
-    outcome.weights.clone_from(&search.data.weights);
-    outcome.noise.clone_from(&search.data.noise);
-    outcome.trials.clone_from(&trials);
-    Some(outcome)
+
+    /// What is told beside the parasitic `force` of `trials` and of means of more rows of the same, where that is likelier than the law `alone`.
+    fn beside(&self, force: ParasiticForce, trials: [&[ContactTrial]; 2], alone: &Fit) -> Option<Outcome> {
+        (self.say)("the contact: without the force of free motion");
+        let without = trials.map(|trials| force.taken_off(trials));
+        let found = self.searched(&without[0], &without[1]);
+        let Some(other) = force.in_place_of_effects(&found.0, &found.1.fit, trials[0]) else {
+            return self.concluded_beside(force, found, trials[0], alone);
+        };
+        let without = trials.map(|trials| other.taken_off(trials));
+        self.concluded_beside(other, self.searched(&without[0], &without[1]), trials[0], alone)
+    }
+
+    fn concluded_beside(
+        &self,
+        force: ParasiticForce,
+        found: (Search<'_>, Chosen),
+        trials: &[ContactTrial],
+        alone: &Fit,
+    ) -> Option<Outcome> {
+        if !force.is_likelier(&found.0, &found.1.fit, trials, alone) {
+            return None;
+        }
+        let mut outcome = self.concluded(found);
+        outcome.verdict = if outcome.named.is_empty() { Verdict::Unknown } else { Verdict::PartlyExplained };
+        outcome.parasitic = Some(force);
+        Some(outcome)
+    }
+
+    /// What is told of what was found.
+    fn concluded(&self, (mut search, chosen): (Search<'_>, Chosen)) -> Outcome {
+        let trials = search.data.trials;
+        let (_, start) = law_of(trials, self.rig);
+        (self.say)("the contact: what is left");
+        // Beside an effect the tool's free motion may hold what that effect does not say, as interference under an atomic force microscope.
+        // What is left beside a zero that wanders is that zero's, where free motion holds as much of it.
+        if chosen.fit.model == search.nominal.model || wanders(&chosen.fit) {
+            search.data = search.data.heard_in_free_motion(&chosen.fit);
+        }
+        let mut outcome = judged(&search, chosen, &start);
+        outcome.weights.clone_from(&search.data.weights);
+        outcome.noise.clone_from(&search.data.noise);
+        outcome.trials = trials.to_vec();
+        outcome
+    }
 }
 
 fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
@@ -147,6 +204,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         verdict,
         crosstalk,
         learned,
+        parasitic: None,
         nominal: search.nominal.clone(),
         known_terms: search.nominal.model.terms.len(),
         intervals: spread.ends,

@@ -12,6 +12,7 @@ use crate::diagnose::contact::held_out::rms;
 use crate::diagnose::contact::learned::LearnedCurve;
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::outcome::Outcome;
+use crate::diagnose::contact::parasitic_force::{Along, ParasiticForce};
 use crate::diagnose::contact::trial::ContactTrial;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::interval::NORMAL_97_5;
@@ -63,7 +64,7 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
             .filter(|spec| spec.place != Place::Drive)
             .map(|spec| spec.name)
             .collect(),
-        findings: findings(outcome),
+        findings: findings(outcome, coordinate),
     };
     diagnosis.summary = summary::summary(&diagnosis, coordinate);
     let first_effect = diagnosis.physics.first().map(|physics| physics.name.as_str());
@@ -161,6 +162,10 @@ fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, loc
             rest.acts_in = Place::Sensor.name();
             rest.statement = format!("{} No effect of the list is that.", coupling(crosstalk));
         }
+        if let Some(force) = &outcome.parasitic {
+            rest.acts_in = Place::Sensor.name();
+            rest.statement = format!("{} No effect of the list is that.", parasitic_words(force, outcome, coordinate));
+        }
         if let Some(curve) = &outcome.learned {
             // Where nothing is named the reader knows refitted values alone.
             let [_, refitted, improved] = residuals.of_laws;
@@ -218,6 +223,21 @@ fn coupling(Crosstalk { part, memory_s }: Crosstalk) -> String {
         "follows the drive's effort".to_owned()
     };
     format!("The force reading {what} by a factor of {}.", quantity::short(part))
+}
+
+/// On what a parasitic force depends, and how large it is in these recordings.
+fn parasitic_words(force: &ParasiticForce, outcome: &Outcome, coordinate: Coordinate) -> String {
+    let added: Vec<f64> = outcome.trials.iter().flat_map(|trial| force.of(trial)).collect();
+    let [low, high] =
+        [added.iter().copied().fold(f64::INFINITY, f64::min), added.iter().copied().fold(f64::NEG_INFINITY, f64::max)];
+    let along = match force.along {
+        Along::Place => "place, as of a cable or a hose that is bent along the way",
+        Along::Velocity => "speed, as of water or air around the tool",
+    };
+    format!(
+        "The force sensor shows a force before anything is touched that goes with the {along}: it changes by {} in these recordings.",
+        quantity::rounded(high - low, coordinate.force_unit(), 2)
+    )
 }
 
 /// What a learned curve looks like: only what stands out of the noise.
@@ -299,7 +319,7 @@ fn correlations(outcome: &Outcome, rig: &Rig) -> Option<Correlations> {
 }
 
 /// What limits the answer.
-fn findings(outcome: &Outcome) -> Vec<Finding> {
+fn findings(outcome: &Outcome, coordinate: Coordinate) -> Vec<Finding> {
     let mut findings = Vec::new();
     let model = &outcome.chosen.model;
     let mut tell = |code: &'static str, place: &str, text: &str| {
@@ -312,6 +332,13 @@ fn findings(outcome: &Outcome) -> Vec<Finding> {
             coupling(crosstalk)
         );
         tell(summary::EFFORT_IN_FORCE, "force", &text);
+    }
+    if let Some(force) = &outcome.parasitic {
+        let text = format!(
+            "{} The contact was judged by the force without it, and so are the figures and pictures; the model does not hold it.",
+            parasitic_words(force, outcome, coordinate)
+        );
+        tell(summary::PARASITIC_FORCE, "force", &text);
     }
     if outcome.is_limited_by_rounding {
         tell(

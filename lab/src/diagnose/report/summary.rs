@@ -15,6 +15,9 @@ const ABOUT_NOISE: f64 = 1.03;
 /// Code of the finding that the force reading holds effort of the drive.
 pub(super) const EFFORT_IN_FORCE: &str = "effort_in_force";
 
+/// Code of the finding that the force reading holds a force of free motion.
+pub(super) const PARASITIC_FORCE: &str = "parasitic_force";
+
 /// Share of a mismatch from which a place holds most of it.
 pub const MAJORITY_SHARE: f64 = 0.5;
 
@@ -27,6 +30,11 @@ pub fn is_noise(fit: &FitQuality) -> bool {
 /// Whether what is not named is effort that the force reading holds.
 pub(super) fn holds_effort(answer: &Diagnosis) -> bool {
     answer.findings.iter().any(|finding| finding.code == EFFORT_IN_FORCE)
+}
+
+/// Whether what is not named is a force of free motion.
+pub(super) fn holds_parasitic_force(answer: &Diagnosis) -> bool {
+    answer.findings.iter().any(|finding| finding.code == PARASITIC_FORCE)
 }
 
 /// Whether refitted values leave more than those of the rig file on rows that no fit saw, in the three digits that a reader sees.
@@ -72,10 +80,13 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
             );
             let what = if holds_effort(answer) {
                 "The force reading holds effort of the drive, which is no effect of the list"
+            } else if holds_parasitic_force(answer) {
+                "The force reading holds a force that acts in free motion, too, which is no effect of the list"
             } else {
                 "Something is missing that no effect of the list explains"
             };
-            format!("{what}: {before} are left where the sensors leave {expected_noise}.{place}")
+            let left = if holds_parasitic_force(answer) { "; without it" } else { ":" };
+            format!("{what}{left} {before} are left where the sensors leave {expected_noise}.{place}")
         }
         Verdict::Explained | Verdict::PartlyExplained => {
             let names: Vec<String> =
@@ -83,6 +94,10 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
             let rest = if answer.verdict == Verdict::PartlyExplained && holds_effort(answer) {
                 format!(
                     " The force reading holds effort of the drive besides, which is no effect of the list: the sensors alone would leave {expected_noise}."
+                )
+            } else if answer.verdict == Verdict::PartlyExplained && holds_parasitic_force(answer) {
+                format!(
+                    " That is of the force without one that acts in free motion, too, which is no effect of the list: the sensors alone would leave {expected_noise}."
                 )
             } else if answer.verdict == Verdict::PartlyExplained {
                 format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")

@@ -1,0 +1,199 @@
+//! A force at the sensor that is not the contact's: it is there in free motion, too, and goes with the place or with the speed.
+//!
+//! A cable or a hose that is bent along the way, or water around the tool, acts before anything is touched, where no law of a contact has a force. In the contact it goes
+//! on, and layers, a damper or a zero of the sensor are fitted to it. It is found where no contact is, taken off the force everywhere, and believed where what is found
+//! then is likelier than what was found with it, by the price of all values (G. Schwarz, *Ann. Stat.* 6, 1978, 461).
+
+use super::criteria::LEAST_GAIN;
+use super::data::Data;
+use super::fit::{Effort, Fit};
+use super::free_rows::FreeRows;
+use super::nominal::{NominalContact, nominal_fit};
+use super::rest::Rest;
+use super::search::Search;
+use super::trial::ContactTrial;
+use crate::diagnose::linalg::solve;
+
+/// On what a parasitic force depends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// The position, as of a cable that is bent along the way.
+    Place,
+    /// The velocity, as of water around the tool.
+    Velocity,
+}
+
+/// A parasitic force: `zero + sum_i parts_i b_i`, with `b = q, q^2, q^3` of `q = (x - origin) / unit`, or `b = q, q |q|` of `q = v / unit`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParasiticForce {
+    /// On what it depends.
+    pub along: Along,
+    /// Position at which `q` is zero, m or rad.
+    pub origin: f64,
+    /// Length or speed at which `q` is one.
+    pub unit: f64,
+    /// N or N m.
+    pub zero: f64,
+    /// N or N m, of each power of `q`.
+    pub parts: Vec<f64>,
+}
+
+/// Share of the free motion, that nearest to the surface, in which none is looked for: where the nominal law puts the surface may be far in the contact.
+const FAR: f64 = 0.5;
+
+/// The same, once the force is taken off and the surface lies where the contact begins.
+const NEAR: f64 = 0.1;
+
+/// Rounds in which surface and force follow each other. The third changed no force by a hundredth.
+const ROUNDS: usize = 3;
+
+impl ParasiticForce {
+    /// The force that free motion shows beside one of `laws` of `data`, the likeliest; `None` where none is beyond chance there.
+    #[must_use]
+    pub fn found(data: &Data<'_>, laws: [&Fit; 2], rig: &NominalContact) -> Option<Self> {
+        let forces = laws.into_iter().filter_map(|law| FreeRows::of(data, law, FAR)).flat_map(|free| free.forces());
+        let likeliest = forces.max_by(|a, b| a.1.total_cmp(&b.1));
+        let (mut force, _) = likeliest.filter(|(_, gain)| *gain > LEAST_GAIN)?;
+        for _ in 0..ROUNDS {
+            let without = nominal_fit(&Data::new(&force.taken_off(data.trials)), rig);
+            let near = FreeRows::of(&Data::new(data.trials), &without, NEAR).into_iter().flat_map(|free| free.forces());
+            let alike = near.filter(|(other, _)| other.along == force.along).max_by(|a, b| a.1.total_cmp(&b.1));
+            force = alike.map_or(force, |(other, _)| other);
+        }
+        Some(force)
+    }
+
+    /// What it adds at `position` and `velocity`, N or N m.
+    #[must_use]
+    pub fn at(&self, position: f64, velocity: f64) -> f64 {
+        let powers = self.basis(position, velocity);
+        self.zero + self.parts.iter().zip(powers).map(|(part, power)| part * power).sum::<f64>()
+    }
+
+    pub(super) fn basis(&self, position: f64, velocity: f64) -> [f64; 3] {
+        match self.along {
+            Along::Place => {
+                let place = (position - self.origin) / self.unit;
+                [place, place * place, place.powi(3)]
+            }
+            Along::Velocity => {
+                let speed = velocity / self.unit;
+                [speed, speed * speed.abs(), 0.0]
+            }
+        }
+    }
+
+    /// What it adds in each row of `trial`.
+    #[must_use]
+    pub fn of(&self, trial: &ContactTrial) -> Vec<f64> {
+        let motion = trial.position.iter().zip(&trial.velocity);
+        motion.map(|(position, velocity)| self.at(*position, *velocity)).collect()
+    }
+
+    /// `trials` without it.
+    #[must_use]
+    pub fn taken_off(&self, trials: &[ContactTrial]) -> Vec<ContactTrial> {
+        let without = |trial: &ContactTrial| {
+            let force = trial.force.iter().zip(self.of(trial)).map(|(force, added)| force - added).collect();
+            ContactTrial { force, ..trial.clone() }
+        };
+        trials.iter().map(without).collect()
+    }
+
+    /// It, fitted to all rows of `trials`, which hold it, beside the nominal law of a `search` without it; `None` where `chosen` has no effects, or with
+    /// them is likelier beside this one by more than [`LEAST_GAIN`]: otherwise they are not needed.
+    #[must_use]
+    pub(super) fn in_place_of_effects(
+        &self,
+        search: &Search<'_>,
+        chosen: &Fit,
+        trials: &[ContactTrial],
+    ) -> Option<Self> {
+        let nominal = &search.nominal;
+        if chosen.model == nominal.model {
+            return None;
+        }
+        let left = search.data.weighted_residual(&nominal.model, &nominal.values);
+        let ranges = nominal.model.ranges(&nominal.values);
+        let free: Vec<usize> = (0..nominal.values.len()).filter(|at| ranges[*at].free).collect();
+        let beside = search.data.columns(&nominal.model, &nominal.values, &ranges, &free, &left);
+        let powers = |at: usize| -> Vec<f64> {
+            let rows = search.data.trials.iter().zip(&search.data.weights);
+            let weighted = rows.flat_map(|(trial, weights)| {
+                let motion = trial.position.iter().zip(&trial.velocity).zip(weights);
+                motion.map(move |((position, velocity), weight)| weight * self.basis(*position, *velocity)[at])
+            });
+            weighted.collect()
+        };
+        let columns = beside.into_iter().chain((0..self.parts.len()).map(powers)).enumerate().collect::<Vec<_>>();
+        let found = solve(&columns, &left)?;
+        let moved = self.parts.iter().zip(found.iter().skip(free.len())).map(|(part, more)| part + more).collect();
+        let other = Self { parts: moved, ..self.clone() };
+        let rest = Rest::of(&search.data, chosen);
+        let alone = search.data.of(&other.taken_off(trials)).fit(&nominal.model, &nominal.values, Effort::FULL);
+        (search.price(&alone, &rest) < search.price(chosen, &rest) + LEAST_GAIN.value()).then_some(other)
+    }
+
+    /// Whether it and `beside`, a law that `search` found without it, are likelier than the law `alone` of `trials` that hold it.
+    #[must_use]
+    pub(super) fn is_likelier(&self, search: &Search<'_>, beside: &Fit, trials: &[ContactTrial], alone: &Fit) -> bool {
+        let rest = Rest::of(&search.data, beside);
+        let alone = search.data.of(trials).fit(&alone.model, &alone.values, Effort::FULL);
+        let own = (self.parts.len() + usize::from(self.along == Along::Place)) as f64;
+        search.price(beside, &rest) + own * search.price_of_value(&rest) + LEAST_GAIN < search.price(&alone, &rest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::circumstances::Circumstances;
+    use super::super::outcome::{Outcome, identify};
+    use super::super::testing::TestContact;
+    use super::*;
+    use crate::diagnose::verdict::Verdict;
+
+    /// What is found where `force` acts beside `contact`, as a function of position and velocity.
+    fn found(contact: &TestContact, force: impl Fn(f64, f64) -> f64) -> Outcome {
+        let trials = || -> Vec<ContactTrial> {
+            let held = [1, 2].map(|seed| {
+                let mut trial = contact.trial(seed);
+                let motion = trial.position.iter().zip(&trial.velocity);
+                let added: Vec<f64> = motion.map(|(position, velocity)| force(*position, *velocity)).collect();
+                trial.force.iter_mut().zip(added).for_each(|(force, added)| *force += added);
+                trial
+            });
+            held.into()
+        };
+        identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap()
+    }
+
+    fn names(outcome: &Outcome) -> Vec<&'static str> {
+        outcome.chosen.model.names(outcome.known_terms)
+    }
+
+    /// Water around the tool, and a cable that pulls along the way: no layers and no damper.
+    #[test]
+    fn a_force_of_free_motion_is_no_effect_of_the_contact() {
+        let water = found(&TestContact::PLAIN, |_, velocity| 300.0 * velocity * velocity.abs());
+        assert_eq!((names(&water), water.verdict), (vec![], Verdict::Unknown));
+        let force = water.parasitic.expect("it goes with the speed");
+        assert_eq!(force.along, Along::Velocity);
+        // At 20 mm/s, twice as fast as the free motion of which it is known: to a quarter of the noise of a row.
+        let slow = force.at(0.0, 0.02);
+        assert!((slow - 300.0 * 0.02f64.powi(2)).abs() < 5e-3, "{slow} N");
+        let cable = found(&TestContact::PLAIN, |position, _| 120.0 * (position + 2e-3));
+        assert_eq!((names(&cable), cable.verdict), (vec![], Verdict::Unknown));
+        let force = cable.parasitic.expect("it goes with the place");
+        let along = force.at(4e-3, 0.0) - force.at(-1e-3, 0.0);
+        assert!(force.along == Along::Place && (along - 0.6).abs() < 0.05, "{along} N");
+    }
+
+    /// Of a spring that stiffens, whose surface the nominal law puts far in the contact, nothing of free motion is told.
+    #[test]
+    fn a_contact_before_the_nominal_surface_is_no_force_of_free_motion() {
+        let stiffens = TestContact { exponent: 1.5, ..TestContact::PLAIN };
+        let alone = found(&stiffens, |_, _| 0.0);
+        assert_eq!((names(&alone), alone.verdict), (vec!["nonlinear_stiffness"], Verdict::Explained));
+        assert_eq!(alone.parasitic, None);
+    }
+}
