@@ -156,6 +156,23 @@ fn effort_in_the_force_reading_is_told_above_the_pictures() {
     assert!(!written(&diagnosis).contains("effects that were tried explains it"));
 }
 
+/// It was taken off, so that what stands beside it must not be told as unexplained.
+#[test]
+fn a_force_of_free_motion_is_told_above_the_pictures() {
+    let (mut answer, pictures) = unknown();
+    answer.findings.push(Finding {
+        code: "parasitic_force",
+        grave: false,
+        place: "force".into(),
+        text: "The force sensor shows a force before anything is touched that goes with the speed.".into(),
+    });
+    answer.summary = summary(&answer, Coordinate::Linear);
+    assert!(answer.summary.starts_with("The force reading holds a force that acts in free motion, too"));
+    let diagnosis = (answer, pictures);
+    says(&diagnosis, &["shows a force where nothing is touched, which no contact has", "judged by what is left"]);
+    assert!(!written(&diagnosis).contains("effects that were tried explains it"));
+}
+
 #[test]
 fn figures_stay_readable_from_nano_to_kilo() {
     says(

@@ -1,7 +1,7 @@
 //! How well the models fit: up to five bars a channel.
 
 use super::super::diagnosis::{Diagnosis, FitQuality, Verdict};
-use super::super::summary::{MOST_OVER_NOISE, refit_is_worse};
+use super::super::summary::{MOST_OVER_NOISE, holds_parasitic_force, refit_is_worse};
 use super::axis::{Axis, across};
 use super::names_physics;
 use super::wording::{channel, heading, multiple, share, times};
@@ -107,7 +107,9 @@ fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     let name = channel(goodness.channel);
     let is_named = answer.physics.iter().any(|one| one.name != "unknown" && one.channel == goodness.channel);
     html! {
-        @if !is_named && is_within_noise(goodness) {
+        @if !is_named && is_within_noise(goodness) && goodness.channel == "force" && holds_parasitic_force(answer) {
+            "Without the force of free motion refitted values leave no more than the expected noise: beside it nothing is missing there."
+        } @else if !is_named && is_within_noise(goodness) {
             "Refitted values leave no more in the " (name) " than the expected noise: nothing is missing there."
         } @else if names_physics(answer) {
             "Of the mean square that refitted values leave in the " (name) " above the noise, the named physics takes away "

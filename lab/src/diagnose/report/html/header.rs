@@ -1,7 +1,7 @@
 //! The answer in one heading and one sentence, the picture that shows it, and what it names.
 
 use super::super::diagnosis::{Diagnosis, PlotData, Verdict};
-use super::super::summary::{holds_effort, is_noise};
+use super::super::summary::{holds_effort, holds_parasitic_force, is_noise};
 use super::wording::{channel, largest_part, list, location, multiple, share, title, worst};
 use super::{effect, finding, state_plot};
 use crate::page::quantity::rounded;
@@ -53,6 +53,10 @@ fn meaning(answer: &Diagnosis) -> Markup {
             "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
             " above the noise. What stays, " (rounded(fit.improved, fit.unit, 3)) ", is " (multiple(fit.improved / fit.noise_floor)) ": the real laws are not quite those that are named."
         },
+        Verdict::PartlyExplained if holds_parasitic_force(answer) => html! {
+            "A " a href="#physics" { "force that acts in free motion, too" } ", is no effect of the list, and was taken off. Of the mean square that refitted values leave in the "
+            (channel(fit.channel)) " without it, above the noise, the physics below takes away " (share(fit.explained_share)) "."
+        },
         Verdict::PartlyExplained => html! {
             "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
             " above the noise. The rest is more than noise, and "
@@ -67,11 +71,14 @@ fn unknown(answer: &Diagnosis) -> Markup {
         @if holds_effort(answer) {
             "Effects of the contact that were fitted to the effort in the reading leave more than the effort itself: they are not named. See "
             a href="#physics" { "what couples in" } " below; the drive was judged by the force without it."
+        } @else if holds_parasitic_force(answer) {
+            "The force sensor shows a force where nothing is touched, which no contact has. It was taken off, and the contact was judged by what is left; see "
+            a href="#physics" { "what it goes with" } " below. No effect of the list is that, so it is not named."
         } @else {
             "The recordings hold something real that the simulation lacks, and none of the " (answer.checked.len())
             " effects that were tried explains it. So it is not named: a wrong name would be worse than none."
         }
-        @if let Some(place) = worst(answer, None) {
+        @if let Some(place) = worst(answer, None).filter(|_| !holds_parasitic_force(answer)) {
             " " (largest_part(place)) (location(place)) "."
         }
     }
