@@ -101,8 +101,11 @@ pub fn identify(
     let alone = given.searched(&trials, coarse);
     let (search, chosen) = &alone;
     let force = ParasiticForce::found(&search.data, [&chosen.fit, &search.nominal], rig);
-    let beside = force.and_then(|force| given.beside(force, [&trials, coarse], &chosen.fit));
-    Some(beside.unwrap_or_else(|| given.concluded(alone)))
+    let law = chosen.fit.clone();
+    let outcome = given.concluded(alone);
+    // Effort that couples into the reading is there in free motion, too, and is known by the effort.
+    let force = force.filter(|_| outcome.crosstalk.is_none());
+    Some(force.and_then(|force| given.beside(force, [&trials, coarse], &law)).unwrap_or(outcome))
 }
 
 /// What a contact is identified by beside its trials.
