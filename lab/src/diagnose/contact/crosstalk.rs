@@ -60,7 +60,7 @@ fn memories(step_s: f64) -> impl Iterator<Item = f64> {
 }
 
 /// Derivatives of the weighted residual `base` of `nominal` by its values.
-fn directions(data: &Data<'_>, nominal: &Fit, base: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn directions(data: &Data<'_>, nominal: &Fit, base: &[f64]) -> Vec<Vec<f64>> {
     let ranges = nominal.model.ranges(&nominal.values);
     let free: Vec<usize> = (0..nominal.values.len()).filter(|at| ranges[*at].free).collect();
     data.columns(&nominal.model, &nominal.values, &ranges, &free, base)

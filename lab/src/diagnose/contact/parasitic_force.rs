@@ -5,6 +5,7 @@
 //! then is likelier than what was found with it, by the price of all values (G. Schwarz, *Ann. Stat.* 6, 1978, 461).
 
 use super::criteria::LEAST_GAIN;
+use super::crosstalk::directions;
 use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::free_rows::FreeRows;
@@ -114,9 +115,8 @@ impl ParasiticForce {
             return None;
         }
         let left = search.data.weighted_residual(&nominal.model, &nominal.values);
-        let ranges = nominal.model.ranges(&nominal.values);
-        let free: Vec<usize> = (0..nominal.values.len()).filter(|at| ranges[*at].free).collect();
-        let beside = search.data.columns(&nominal.model, &nominal.values, &ranges, &free, &left);
+        let beside = directions(&search.data, nominal, &left);
+        let others = beside.len();
         let powers = |at: usize| -> Vec<f64> {
             let rows = search.data.trials.iter().zip(&search.data.weights);
             let weighted = rows.flat_map(|(trial, weights)| {
@@ -127,7 +127,7 @@ impl ParasiticForce {
         };
         let columns = beside.into_iter().chain((0..self.parts.len()).map(powers)).enumerate().collect::<Vec<_>>();
         let found = solve(&columns, &left)?;
-        let moved = self.parts.iter().zip(found.iter().skip(free.len())).map(|(part, more)| part + more).collect();
+        let moved = self.parts.iter().zip(found.iter().skip(others)).map(|(part, more)| part + more).collect();
         let other = Self { parts: moved, ..self.clone() };
         let rest = Rest::of(&search.data, chosen);
         let alone = search.data.of(&other.taken_off(trials)).fit(&nominal.model, &nominal.values, Effort::FULL);
