@@ -140,6 +140,9 @@ fn what_cannot_be_said_is_refused_by_name_and_left_to_the_stepper() {
         "{module}"
     );
     assert!(!module.contains("coulomb"), "{module}");
+    let cable = "[[effect]]\nname = \"parasitic_force\"\nform = \"by_speed\"\nspeed_m_s = 0.1\nlinear_n = 0.2\nsquare_n = 0.0\n";
+    refuses("mjcf", MJCF, cable, &[], &["parasitic_force", "model the cable"]);
+    assert!(exported("python", MJCF, cable, &[]).contains("(\"parasitic_force\", \"by_speed\", {\"speed\": 0.1,"));
     let carried = "[[effect]]\nname = \"environment_mass\"\nmoved_mass_kg = 0.2\n";
     refuses("python", MJCF, carried, &[], &["environment_mass", "not in the stepper either", "give it this mass"]);
 }

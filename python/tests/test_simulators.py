@@ -162,6 +162,27 @@ def test_the_sensor_shows_what_the_effect_says(folder_of_test, name):
     assert shown == pytest.approx(wanted(3.0 * times, times), abs=1e-9)
 
 
+PARASITIC = {
+    "cable": (
+        'form = "by_place"\norigin_m = 0.01\nlength_m = 0.02\nconstant_n = 0.1\nlinear_n = 0.2\nsquare_n = 0.3\ncubic_n = 0.4\n',
+        # q = -1/2 at the origin of the joint.
+        0.1 - 0.2 / 2 + 0.3 / 4 - 0.4 / 8,
+    ),
+    # q = -2.
+    "water": ('form = "by_speed"\nspeed_m_s = 0.1\nlinear_n = 0.2\nsquare_n = 0.3\n', -0.2 * 2 - 0.3 * 4),
+}
+
+
+@pytest.mark.parametrize("name", PARASITIC)
+def test_the_sensor_shows_a_force_of_free_motion(folder_of_test, name):
+    keys, wanted = PARASITIC[name]
+    made = module(folder_of_test, f'[[effect]]\nname = "parasitic_force"\n{keys}')
+    model = mujoco.MjModel.from_xml_string(MODEL)
+    data = mujoco.MjData(model)
+    data.qvel[0] = -0.2
+    assert made.Stepper(model, data).reading(3.0) == pytest.approx(3.0 + wanted, abs=1e-12)
+
+
 URDF = """<robot name="r">
   <link name="base"/>
   <link name="slide"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>

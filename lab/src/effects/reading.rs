@@ -11,6 +11,10 @@ pub struct Reading<'a> {
     pub step: f64,
     /// Width of the smoothing filter that what the sensor adds has passed, s: standard deviation; zero in a simulation.
     pub filter_width: f64,
+    /// Position of the tool, m or rad.
+    pub position: &'a [f64],
+    /// Velocity of the tool.
+    pub velocity: &'a [f64],
     /// Acceleration of the tool.
     pub acceleration: &'a [f64],
     /// In: the force at the sensor. Out: its reading.

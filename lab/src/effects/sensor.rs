@@ -7,4 +7,5 @@ pub mod force_gain;
 pub mod force_lag;
 pub mod force_saturation;
 pub mod mains_hum;
+pub mod parasitic_force;
 pub mod tool_inertia;

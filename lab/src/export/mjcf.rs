@@ -53,6 +53,9 @@ pub fn refusal(effect: &FoundEffect) -> Option<&'static str> {
             "a sensor has noise, delay and cutoff alone"
         }
         ("tool_inertia", _) => "it is mass beyond the sensor's site: move that mass in your model",
+        ("parasitic_force", _) => {
+            "a sensor of MuJoCo feels what acts in the model alone: model the cable, the hose or the water"
+        }
         ("environment_mass", _) => "it is a body of your model that is touched: give it this mass",
         _ => "MuJoCo's contact is an impedance of the constraint solver, not a law of depth and rate",
     })

@@ -11,11 +11,12 @@ use crate::rig::{Contact, Rig};
 const STEPPER: &str = include_str!("stepper.py");
 
 /// Friction and effects of the sensor that the stepper has laws for. A contact's laws it asks the package `palpate` for.
-const KNOWN: [&str; 10] = [
+const KNOWN: [&str; 11] = [
     "sublinear_friction",
     "stribeck_friction",
     "load_dependent_friction",
     "tool_inertia",
+    "parasitic_force",
     "force_gain",
     "force_lag",
     "force_bias",

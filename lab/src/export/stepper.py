@@ -155,6 +155,15 @@ def hum(time, values):
     return values["sine"] * math.sin(phase) + values["cosine"] * math.cos(phase)
 
 
+def parasitic(form, values, position, velocity):
+    """A force of free motion, as of a cable or of water, that the force sensor feels."""
+    if form == "by_place":
+        q = (position - values["origin"]) / values["length"]
+        return values["constant"] + values["linear"] * q + values["square"] * q**2 + values["cubic"] * q**3
+    q = velocity / values["speed"]
+    return values["linear"] * q + values["square"] * q * abs(q)
+
+
 def saturated(force, values):
     """The end of a sensor's range, rounded where it has a knee."""
     beyond = abs(force) - values["limit"]
@@ -168,6 +177,8 @@ def saturated(force, values):
 # What the force sensor makes of a force, N or N m.
 SENSOR = {
     "tool_inertia": lambda f, form, p, model, data, joint: f + p["beyond_mass"] * data.qacc[joint.dof],
+    "parasitic_force": lambda f, form, p, model, data, joint: f
+    + parasitic(form, p, data.qpos[joint.qpos], data.qvel[joint.dof]),
     "force_gain": lambda f, form, p, model, data, joint: f * (1.0 + p["gain_error"]),
     "force_lag": lambda f, form, p, model, data, joint: low_pass(f, p, model.opt.timestep, joint),
     "force_bias": lambda f, form, p, model, data, joint: f + p["bias"],

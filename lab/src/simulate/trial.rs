@@ -52,8 +52,8 @@ struct Run<'a> {
     rng: ChaCha8Rng,
     /// Its force is the true one until the run is over.
     recording: Recording,
-    /// True acceleration of the tool, row by row.
-    acceleration: Vec<f64>,
+    /// True position, velocity and acceleration of the tool, row by row.
+    motion: [Vec<f64>; 3],
     touched: bool,
     limited: usize,
     /// What the pilot commands, until the next row.
@@ -134,7 +134,7 @@ impl<'a> Run<'a> {
             },
             rng: ChaCha8Rng::seed_from_u64(seed),
             recording,
-            acceleration: Vec::new(),
+            motion: Default::default(),
             touched: false,
             limited: 0,
             command: None,
@@ -164,7 +164,8 @@ impl<'a> Run<'a> {
             let (force, acceleration) = actuation.now();
             self.touched |= contact.bilateral || state.position > contact.surface || force != 0.0;
             forces.push(force);
-            self.acceleration.push(acceleration);
+            let now = [state.position, state.velocity, acceleration];
+            self.motion.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
         }
         if let (Actuation::Driven(driven), Some(efforts)) = (actuation, &mut recording.effort) {
             self.limited += usize::from(driven.effort.abs() >= self.setting.control.effort_saturation);
@@ -205,11 +206,12 @@ impl<'a> Run<'a> {
     fn apply_sensors(&mut self) {
         let Some(force) = &mut self.recording.force else { return };
         let step = self.setting.simulation.rate_hz.recip();
+        let [position, velocity, acceleration] = &self.motion;
         let mut actives = self.setting.actives();
         actives.retain(|active| active.effect.spec().place == Place::Sensor);
         actives.sort_by_key(crate::effects::ActiveEffect::stage);
         for active in actives {
-            let mut reading = Reading { start: 0.0, step, filter_width: 0.0, acceleration: &self.acceleration, force };
+            let mut reading = Reading { start: 0.0, step, filter_width: 0.0, position, velocity, acceleration, force };
             active.effect.act_on_reading(active.form, active.values, &mut reading);
         }
         force.iter_mut().for_each(|force| *force = self.load_cell.read(*force, &mut self.rng));

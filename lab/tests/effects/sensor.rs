@@ -33,6 +33,25 @@ fn what_is_beyond_the_sensor_is_felt_in_free_motion_too() {
     }
 }
 
+/// A cable by its place and water by its speed, in free motion and in contact.
+#[test]
+fn a_parasitic_force_is_a_polynomial_of_place_or_speed() {
+    let reads =
+        |table: &str| run(&with(&rig(REFERENCE, false), &format!("[[effect]]\nname = \"parasitic_force\"\n{table}")));
+    let plain = run(&rig(REFERENCE, false));
+    let cable = reads(
+        "form = \"by_place\"\norigin_m = -0.004\nlength_m = 0.01\nconstant_n = 0.1\nlinear_n = 0.2\nsquare_n = 0.3\ncubic_n = 0.4\n",
+    );
+    let water = reads("form = \"by_speed\"\nspeed_m_s = 0.05\nlinear_n = 0.2\nsquare_n = 0.3\n");
+    for row in 0..4000 {
+        let (x, v) = REFERENCE.at(row as f64 / RATE);
+        let (place, speed) = ((x + 0.004) / 0.01, v / 0.05);
+        let pulls = 0.1 + place * (0.2 + place * (0.3 + place * 0.4));
+        close(force(&cable)[row] - force(&plain)[row], pulls, 1e-9, "cable");
+        close(force(&water)[row] - force(&plain)[row], 0.2 * speed + 0.3 * speed * speed.abs(), 1e-9, "water");
+    }
+}
+
 #[test]
 fn a_zero_settles_and_a_range_ends_in_a_knee() {
     let plain = run(&rig(REFERENCE, false));

@@ -46,6 +46,8 @@ impl ContactModel {
                 start: trial.time.first().copied().unwrap_or(0.0),
                 step: trial.step_s,
                 filter_width: width,
+                position: &trial.position,
+                velocity: &trial.velocity,
                 acceleration: &trial.acceleration,
                 force,
             };
