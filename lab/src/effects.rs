@@ -23,6 +23,7 @@ mod sensor;
 pub use contact::hysteresis::{HYSTERESIS_BETWEEN, HYSTERESIS_SLIP};
 pub use contact::layered_stiffness::LAYERS_OF_FORMS;
 pub use contact::learned::{LEARNED_FORM, LEARNED_KNOTS};
+pub use contact::learned_damping::{DAMPING_BY_SPEED, DAMPING_BY_SPEED_AND_DEPTH, DAMPING_KNOTS};
 pub use contact_simulator::{ActiveEffect, ContactSimulator};
 pub use contact_state::{ContactState, gate, ramp, rounded};
 pub use drive_state::DriveState;
@@ -33,6 +34,7 @@ pub use foundation::Foundation;
 pub use reading::Reading;
 pub use resolved::{Resolved, interval_key, resolve_all, to_table};
 pub use sensor::mains_hum::MAINS_TOLERANCE;
+pub use sensor::parasitic_force::{PARASITIC_BY_PLACE, PARASITIC_BY_SPEED, parasitic_powers};
 
 /// The internal state of an effect with state, from one sample to the next; all zero at the start of a trial. Each effect says what
 /// its entries mean.
@@ -164,9 +166,15 @@ pub static ALL: [&dyn Effect; 30] = [
 /// The element for what no effect explains. It is none of [`ALL`]: no search asks for it, and no list names it.
 pub static LEARNED: &contact::learned::Learned = &contact::learned::Learned;
 
+/// The same for what goes with the speed in contact.
+pub static LEARNED_DAMPING: &contact::learned_damping::LearnedDamping = &contact::learned_damping::LearnedDamping;
+
+/// A force of free motion at the sensor. It is none of [`ALL`]: that something pulls is known of it, and not what.
+pub static PARASITIC_FORCE: &sensor::parasitic_force::ParasiticForce = &sensor::parasitic_force::ParasiticForce;
+
 /// The effect of that name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static dyn Effect> {
-    let learned: &dyn Effect = LEARNED;
-    ALL.into_iter().chain([learned]).find(|effect| effect.spec().name == name)
+    let unlisted: [&dyn Effect; 3] = [LEARNED, LEARNED_DAMPING, PARASITIC_FORCE];
+    ALL.into_iter().chain(unlisted).find(|effect| effect.spec().name == name)
 }

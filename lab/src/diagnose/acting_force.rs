@@ -164,7 +164,7 @@ fn clock(time: &[f64], looked_at: &ContactTrial) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::diagnose::contact::circumstances::Circumstances;
-    use crate::diagnose::contact::outcome::identify;
+    use crate::diagnose::contact::identification::identify;
     use crate::diagnose::contact::testing::{FORCE_NOISE, RATE, TestContact};
     use crate::diagnose::interval::NORMAL_97_5;
 

@@ -157,7 +157,7 @@ impl Recorded<'_> {
         let Some(nominal) = contact::prepare::nominal(&rig, known).filter(|_| is_recorded) else { return Ok(None) };
         let [fine, coarse] = contact::prepare::trials(self.trials, self.figures);
         let circumstances = Circumstances { is_one_speed: self.is_one_speed, refuted: with_kin(refuted) };
-        Ok(contact::outcome::identify(fine, &coarse, &nominal, circumstances, self.say))
+        Ok(contact::identification::identify(fine, &coarse, &nominal, circumstances, self.say))
     }
 
     /// The drive in `trials`, where their force is not `clipped`.

@@ -48,7 +48,7 @@ fn spans(time: &[f64], missed: &[f64], noise: f64) -> Spans {
 mod tests {
     use super::*;
     use crate::diagnose::contact::circumstances::Circumstances;
-    use crate::diagnose::contact::outcome::identify;
+    use crate::diagnose::contact::identification::identify;
     use crate::diagnose::contact::testing::{FORCE_NOISE, TestContact};
 
     #[test]

@@ -62,7 +62,9 @@ pub fn solve(directions: &[(usize, Vec<f64>)], target: &[f64]) -> Option<DVector
         return None;
     }
     // Directions differ in size by their units: each is taken as long as one.
-    let sizes: Vec<f64> = directions.iter().map(|(_, d)| dot(d, d).sqrt().max(f64::MIN_POSITIVE)).collect();
+    let size = |direction: &[f64]| energy(direction).sqrt();
+    // One of nothing but zeros takes nothing.
+    let sizes: Vec<f64> = directions.iter().map(|(_, d)| size(d)).map(|d| if d > 0.0 { d } else { 1.0 }).collect();
     let mut normal = DMatrix::zeros(n, n);
     for i in 0..n {
         for j in 0..=i {
@@ -98,6 +100,14 @@ mod tests {
         assert!(correlation_ratio(&along, &tone) < 0.02);
         assert_eq!(correlation_ratio(&along, &vec![0.3; 4000]), 0.0);
         assert_eq!(correlation_ratio(&[], &[]), 0.0);
+    }
+
+    #[test]
+    fn a_direction_of_zeros_takes_nothing() {
+        let directions = [(0, vec![1.0, 2.0, 3.0]), (1, vec![0.0; 3])];
+        let found = solve(&directions, &[2.0, 4.0, 6.0]).unwrap();
+        // The diagonal is a thousand-millionth too large.
+        assert!((found[0] - 2.0).abs() < 4e-9 && found[1] == 0.0, "{found}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ pub mod hunt_crossley_damping;
 pub mod hysteresis;
 pub mod layered_stiffness;
 pub mod learned;
+pub mod learned_damping;
 pub mod lost_motion;
 pub mod nonlinear_stiffness;
 pub mod plastic_set;

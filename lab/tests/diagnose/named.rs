@@ -83,6 +83,28 @@ fn a_force_sensor_off_its_zero() {
     finds(&case, "force_bias", &[("bias", 0.3)]);
 }
 
+/// Water around the tool, which drags with the square of the speed: no effect of the list, told as what it goes with, and a part of the improved rig file, to
+/// which nothing is missing.
+#[test]
+fn a_force_of_free_motion_is_modelled() {
+    let water = "[[effect]]\nname = \"parasitic_force\"\nform = \"by_speed\"\nspeed_m_s = 0.05\nlinear_n = 0.0\nsquare_n = 0.5\n";
+    let case = Case::led(BENCH, water);
+    let answer = case.diagnose(&["--model", "improved.toml"]);
+    let unknown = &answer["physics"][0];
+    assert_eq!((&answer["verdict"], &unknown["name"]), (&"unknown".into(), &"unknown".into()), "{answer:#}");
+    assert!(unknown["statement"].as_str().unwrap().contains("speed"), "{unknown}");
+    assert!(unknown["evidence"]["held_out_gain"].as_f64().unwrap() > 0.9, "{unknown}");
+    let codes: Vec<&Value> = answer["findings"].as_array().unwrap().iter().map(|finding| &finding["code"]).collect();
+    assert!(codes.contains(&&"parasitic_force".into()), "{codes:?}");
+    let (floor, refitted, improved) = (fit(&answer, "noise_floor"), fit(&answer, "refitted"), fit(&answer, "improved"));
+    assert!(
+        improved <= 1.3 * floor && improved < 0.5 * refitted,
+        "floor {floor}, {refitted} refitted, {improved} improved"
+    );
+    let again = case.found(&["--rig", "improved.toml", "trial-1.csv", "trial-2.csv"]);
+    assert_eq!((&again["verdict"], &again["physics"]), (&"no_mismatch".into(), &serde_json::json!([])), "{again:#}");
+}
+
 /// The led bench, led by a drive of 0.45 kg whose effort is recorded.
 fn driven_into_the_pad(trial: usize) -> String {
     let drive = "[drive]\nmass_kg = 0.45\nviscous_n_s_m = 2.0\n\

@@ -118,8 +118,9 @@ fn without_effort(trial: &ContactTrial, crosstalk: Crosstalk) -> ContactTrial {
 #[cfg(test)]
 mod tests {
     use super::super::circumstances::Circumstances;
+    use super::super::identification::identify;
     use super::super::nominal::nominal_fit;
-    use super::super::outcome::{Outcome, identify};
+    use super::super::outcome::Outcome;
     use super::super::testing::{RATE, TestContact};
     use super::*;
     use crate::diagnose::term::Term;

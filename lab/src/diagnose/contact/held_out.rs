@@ -67,7 +67,7 @@ impl Folds {
         Self { halves: [half(0), half(1)] }
     }
 
-    fn masked<'a>(&self, data: &Data<'a>, half: usize) -> Data<'a> {
+    pub(super) fn masked<'a>(&self, data: &Data<'a>, half: usize) -> Data<'a> {
         let weights = data.weights.iter().zip(&self.halves[half]).map(|(weights, own)| {
             weights.iter().zip(own).map(|(weight, own)| if *own { *weight } else { 0.0 }).collect()
         });

@@ -80,7 +80,7 @@ pub(super) fn verdict(search: &Search<'_>, fit: &Fit, named: &[NamedTerm], given
 #[cfg(test)]
 mod tests {
     use super::super::circumstances::Circumstances;
-    use super::super::outcome::identify;
+    use super::super::identification::identify;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::super::trial::ContactTrial;
     use super::leaves_little;

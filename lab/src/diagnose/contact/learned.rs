@@ -6,7 +6,9 @@ use super::broken_line::DepthProfile;
 use super::criteria::{LEAST_HELD_OUT_SHARE, NOTABLE_POWER};
 use super::data::Data;
 use super::fit::Fit;
-use super::held_out::{Folds, rms};
+use super::free_curve::way_below;
+use super::held_out::{Folds, HeldOut, rms};
+use super::learned_damping::DampingCurve;
 use super::model::index;
 use super::rest::Rest;
 use super::spline::{Part, Spline};
@@ -15,6 +17,63 @@ use crate::diagnose::interval::NORMAL_97_5;
 use crate::diagnose::linalg::energy;
 use crate::diagnose::term::Term;
 use crate::effects::{LEARNED, LEARNED_FORM, LEARNED_KNOTS, geometric};
+
+/// What is learned.
+#[derive(Debug, Clone)]
+pub enum Learned {
+    /// A curve over depth and direction.
+    OverDepth(LearnedCurve),
+    /// A curve over the speed in contact.
+    OverSpeed(DampingCurve),
+}
+
+impl Learned {
+    /// The law with it.
+    #[must_use]
+    pub fn fit(&self) -> &Fit {
+        match self {
+            Self::OverDepth(curve) => &curve.fit,
+            Self::OverSpeed(curve) => &curve.fit,
+        }
+    }
+
+    /// What that leaves of rows that taught nothing, N or N m, a column a trial.
+    #[must_use]
+    pub fn residual(&self) -> &Vec<Vec<f64>> {
+        match self {
+            Self::OverDepth(curve) => &curve.residual,
+            Self::OverSpeed(curve) => &curve.residual,
+        }
+    }
+
+    /// The same, to change.
+    pub fn residual_mut(&mut self) -> &mut Vec<Vec<f64>> {
+        match self {
+            Self::OverDepth(curve) => &mut curve.residual,
+            Self::OverSpeed(curve) => &mut curve.residual,
+        }
+    }
+
+    /// 95 % interval of each value of the fit, where `law` are those of the law's.
+    #[must_use]
+    pub fn intervals(&self, law: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let covariance = match self {
+            Self::OverDepth(curve) => &curve.covariance,
+            Self::OverSpeed(curve) => &curve.covariance,
+        };
+        let values = &self.fit().values;
+        let deviations = covariance.diagonal().map(|variance| variance.max(0.0).sqrt());
+        let forces = values.len() - deviations.len();
+        let mut ends: Vec<[f64; 2]> = law.to_vec();
+        ends.extend(values[law.len()..forces].iter().map(|value| [*value; 2]));
+        let of_force = |(value, deviation): (&f64, &f64)| {
+            let half = NORMAL_97_5 * deviation;
+            [value - half, value + half]
+        };
+        ends.extend(values[forces..].iter().zip(&deviations).map(of_force));
+        ends
+    }
+}
 
 /// A law with a learned element behind its other terms.
 #[derive(Debug, Clone)]
@@ -43,22 +102,6 @@ pub struct PathPoint {
 }
 
 impl LearnedCurve {
-    /// 95 % interval of each value of the fit, where `law` are those of the law's.
-    #[must_use]
-    pub fn intervals(&self, law: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let values = &self.fit.values;
-        let deviations = self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt());
-        let forces = values.len() - deviations.len();
-        let mut ends: Vec<[f64; 2]> = law.to_vec();
-        ends.extend(values[law.len()..forces].iter().map(|value| [*value; 2]));
-        let of_force = |(value, deviation): (&f64, &f64)| {
-            let half = NORMAL_97_5 * deviation;
-            [value - half, value + half]
-        };
-        ends.extend(values[forces..].iter().zip(&deviations).map(of_force));
-        ends
-    }
-
     /// Half-width of the 95 % interval of the force on the way in, N or N m: the median over the depth, and the greatest.
     #[must_use]
     pub fn half_widths(&self) -> [f64; 2] {
@@ -113,12 +156,8 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     let folds = Folds::with_blocks(data, BLOCKS);
     let model = law.model.with(Term { effect: LEARNED, form: LEARNED_FORM });
     let surface = law.values[index::SURFACE];
-    let [low, high] = model.scales.positions.map(|position| position - surface);
-    let from = if model.bilateral { low } else { low.max(-BEFORE_SURFACE * high.max(0.0)) };
+    let [from, high] = way_below(law, BEFORE_SURFACE)?;
     let way = high - from;
-    if !way.is_finite() || way <= 0.0 {
-        return None;
-    }
     let rest: Vec<Vec<f64>> =
         (0..data.trials.len()).map(|trial| data.residual(&law.model, &law.values, trial)).collect();
     let profile = DepthProfile::of(data.trials, &rest, [from, high].map(|place| surface + place));
@@ -134,20 +173,24 @@ pub fn learned(data: &Data<'_>, law: &Fit) -> Option<LearnedCurve> {
     let (penalty, _) = spline.best_penalty()?;
     let taught = [spline.values(penalty, Part::FirstHalf)?, spline.values(penalty, Part::SecondHalf)?];
     let values = spline.values(penalty, Part::All)?;
-    let (left, unseen) = (folds.held_out(data, law), folds.judged(data, &model, taught));
-    // Where next to nothing is above the noise, a share of that says nothing: what would not be notable counts as the least.
-    let expected = data.expected();
-    let above = (left.energy - expected).max(((NOTABLE_POWER - 1.0) * expected).value());
-    let held_out_share = (left.energy - unseen.energy) / above;
-    // By weight, and as it is told: in newtons.
-    if held_out_share < LEAST_HELD_OUT_SHARE || rms(data, &unseen.residual) >= rms(data, &left.residual) {
-        return None;
-    }
+    let unseen = folds.judged(data, &model, taught);
+    let held_out_share = share_that_pays(data, &folds.held_out(data, law), &unseen)?;
     let energy = energy(&data.weighted_residual(&model, &values));
     let fit = Fit { model, values, energy };
     let paths = paths(&fit, &data.trials[0], [surface + from, surface + high]);
     let covariance = spline.covariance(penalty, &Rest::of(data, &fit))?;
-    Some(LearnedCurve { fit, residual: unseen.residual, held_out_share: held_out_share.min(1.0), covariance, paths })
+    Some(LearnedCurve { fit, residual: unseen.residual, held_out_share, covariance, paths })
+}
+
+/// Share of the power above the noise that an element takes of unseen rows, where it leaves `unseen` and the law without it `left`; `None` where they do not pay for it.
+pub(super) fn share_that_pays(data: &Data<'_>, left: &HeldOut, unseen: &HeldOut) -> Option<f64> {
+    // Where next to nothing is above the noise, a share of that says nothing: what would not be notable counts as the least.
+    let expected = data.expected();
+    let above = (left.energy - expected).max(((NOTABLE_POWER - 1.0) * expected).value());
+    let share = (left.energy - unseen.energy) / above;
+    // By weight, and as it is told: in newtons.
+    let pays = share >= LEAST_HELD_OUT_SHARE && rms(data, &unseen.residual) < rms(data, &left.residual);
+    pays.then_some(share.min(1.0))
 }
 
 /// In from `ends[0]` to `ends[1]` and out again, so slowly that nothing asks for the speed.
@@ -300,7 +343,7 @@ mod tests {
         assert!(curve.held_out_share > 0.9, "{}", curve.held_out_share);
         let rest = rms(&data, &curve.residual);
         assert!(rest < 1.2 * FORCE_NOISE, "{rest}");
-        let ends = curve.intervals(&vec![[0.0; 2]; law.values.len()]);
+        let ends = Learned::OverDepth(curve.clone()).intervals(&vec![[0.0; 2]; law.values.len()]);
         let forces = curve.fit.values.len() - 2 * LEARNED_KNOTS;
         let [usual, most] = curve.half_widths();
         // 6000 rows over some twenty knots in 8 mm: 0.02 N / sqrt(300), twice.

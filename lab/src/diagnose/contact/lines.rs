@@ -74,7 +74,7 @@ pub(super) fn line_beyond(more: &Fit, less: &Fit) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::super::circumstances::Circumstances;
-    use super::super::outcome::identify;
+    use super::super::identification::identify;
     use super::super::testing::{FORCE_NOISE, RATE, TestContact};
     use super::super::trial::ContactTrial;
 

@@ -9,11 +9,13 @@ use super::crosstalk::directions;
 use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::free_rows::FreeRows;
+use super::held_out::Folds;
 use super::nominal::{NominalContact, nominal_fit};
 use super::rest::Rest;
 use super::search::Search;
 use super::trial::ContactTrial;
 use crate::diagnose::linalg::solve;
+use crate::effects::{PARASITIC_BY_PLACE, PARASITIC_BY_SPEED, parasitic_powers};
 
 /// On what a parasitic force depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +35,7 @@ pub struct ParasiticForce {
     pub origin: f64,
     /// Length or speed at which `q` is one.
     pub unit: f64,
-    /// N or N m.
+    /// What it is at the origin, N or N m; zero where it goes with the velocity.
     pub zero: f64,
     /// N or N m, of each power of `q`.
     pub parts: Vec<f64>,
@@ -73,15 +75,59 @@ impl ParasiticForce {
 
     pub(super) fn basis(&self, position: f64, velocity: f64) -> [f64; 3] {
         match self.along {
-            Along::Place => {
-                let place = (position - self.origin) / self.unit;
-                [place, place * place, place.powi(3)]
-            }
-            Along::Velocity => {
-                let speed = velocity / self.unit;
-                [speed, speed * speed.abs(), 0.0]
-            }
+            Along::Place => parasitic_powers(PARASITIC_BY_PLACE, (position - self.origin) / self.unit),
+            Along::Velocity => parasitic_powers(PARASITIC_BY_SPEED, velocity / self.unit),
         }
+    }
+
+    /// The form of the element of a rig file that it is, and its values.
+    #[must_use]
+    pub fn element(&self) -> (usize, Vec<f64>) {
+        let part = |nth: usize| self.parts.get(nth).copied().unwrap_or(0.0);
+        match self.along {
+            Along::Place => (PARASITIC_BY_PLACE, vec![self.origin, self.unit, self.zero, part(0), part(1), part(2)]),
+            Along::Velocity => (PARASITIC_BY_SPEED, vec![self.unit, part(0), part(1)]),
+        }
+    }
+
+    /// In each row of `data`, which is without it: the force that all rows give less that which the other half of the rows gives beside the law `fit`, N or N m, a
+    /// column a trial.
+    #[must_use]
+    pub(super) fn unseen(&self, data: &Data<'_>, fit: &Fit, folds: &Folds) -> Vec<Vec<f64>> {
+        let moved = [0, 1].map(|half| self.moved_by(&folds.masked(data, half), fit));
+        let is_first = folds.is_first();
+        let of_trial = |(trial, start): (&ContactTrial, &usize)| -> Vec<f64> {
+            let motion = trial.position.iter().zip(&trial.velocity).zip(&is_first[*start..]);
+            let less = motion.map(|((position, velocity), is_first)| {
+                let powers = self.basis(*position, *velocity);
+                -moved[usize::from(*is_first)].iter().zip(powers).map(|(part, power)| part * power).sum::<f64>()
+            });
+            less.collect()
+        };
+        data.trials.iter().zip(&data.starts()).map(of_trial).collect()
+    }
+
+    /// By how much the rows of `data`, which are without it, move its parts beside the law `fit`; not at all where they tell none.
+    fn moved_by(&self, data: &Data<'_>, fit: &Fit) -> Vec<f64> {
+        let left = data.weighted_residual(&fit.model, &fit.values);
+        let beside = directions(data, fit, &left);
+        let others = beside.len();
+        let columns: Vec<(usize, Vec<f64>)> = beside.into_iter().chain(self.columns(data)).enumerate().collect();
+        let found = solve(&columns, &left);
+        found.map_or_else(|| vec![0.0; self.parts.len()], |found| found.iter().skip(others).copied().collect())
+    }
+
+    /// What each of its parts is multiplied with in each row of `data`, weighted, trial after trial.
+    fn columns(&self, data: &Data<'_>) -> impl Iterator<Item = Vec<f64>> {
+        let powers = move |at: usize| -> Vec<f64> {
+            let rows = data.trials.iter().zip(&data.weights);
+            let weighted = rows.flat_map(|(trial, weights)| {
+                let motion = trial.position.iter().zip(&trial.velocity).zip(weights);
+                motion.map(move |((position, velocity), weight)| weight * self.basis(*position, *velocity)[at])
+            });
+            weighted.collect()
+        };
+        (0..self.parts.len()).map(powers)
     }
 
     /// What it adds in each row of `trial`.
@@ -114,20 +160,8 @@ impl ParasiticForce {
         if chosen.model == nominal.model {
             return None;
         }
-        let left = search.data.weighted_residual(&nominal.model, &nominal.values);
-        let beside = directions(&search.data, nominal, &left);
-        let others = beside.len();
-        let powers = |at: usize| -> Vec<f64> {
-            let rows = search.data.trials.iter().zip(&search.data.weights);
-            let weighted = rows.flat_map(|(trial, weights)| {
-                let motion = trial.position.iter().zip(&trial.velocity).zip(weights);
-                motion.map(move |((position, velocity), weight)| weight * self.basis(*position, *velocity)[at])
-            });
-            weighted.collect()
-        };
-        let columns = beside.into_iter().chain((0..self.parts.len()).map(powers)).enumerate().collect::<Vec<_>>();
-        let found = solve(&columns, &left)?;
-        let moved = self.parts.iter().zip(found.iter().skip(others)).map(|(part, more)| part + more).collect();
+        let moved =
+            self.parts.iter().zip(self.moved_by(&search.data, nominal)).map(|(part, more)| part + more).collect();
         let other = Self { parts: moved, ..self.clone() };
         let rest = Rest::of(&search.data, chosen);
         let alone = search.data.of(&other.taken_off(trials)).fit(&nominal.model, &nominal.values, Effort::FULL);
@@ -147,10 +181,13 @@ impl ParasiticForce {
 #[cfg(test)]
 mod tests {
     use super::super::circumstances::Circumstances;
-    use super::super::outcome::{Outcome, identify};
+    use super::super::identification::identify;
+    use super::super::outcome::Outcome;
     use super::super::testing::TestContact;
     use super::*;
+    use crate::diagnose::linalg::energy;
     use crate::diagnose::verdict::Verdict;
+    use crate::effects::{Effect as _, PARASITIC_FORCE, Reading};
 
     /// What is found where `force` acts beside `contact`, as a function of position and velocity.
     fn found(contact: &TestContact, force: impl Fn(f64, f64) -> f64) -> Outcome {
@@ -181,11 +218,39 @@ mod tests {
         // At 20 mm/s, twice as fast as the free motion of which it is known: to a quarter of the noise of a row.
         let slow = force.at(0.0, 0.02);
         assert!((slow - 300.0 * 0.02f64.powi(2)).abs() < 5e-3, "{slow} N");
+        // What is left holds it by the refitted nominal law, and by the answer does not: free motion alone has 40 mN of it in root mean square.
+        let [_, refitted, improved] = [0, 1, 2].map(|law| energy(&water.residuals[law].concat()));
+        assert!(improved < 0.5 * refitted, "{improved} {refitted}");
         let cable = found(&TestContact::PLAIN, |position, _| 120.0 * (position + 2e-3));
         assert_eq!((names(&cable), cable.verdict), (vec![], Verdict::Unknown));
         let force = cable.parasitic.expect("it goes with the place");
         let along = force.at(4e-3, 0.0) - force.at(-1e-3, 0.0);
         assert!(force.along == Along::Place && (along - 0.6).abs() < 0.05, "{along} N");
+    }
+
+    /// The force of both forms, and that of the element that the rig file holds of it.
+    #[test]
+    fn the_element_of_a_rig_file_is_the_same_force() {
+        let place = ParasiticForce { along: Along::Place, origin: 1e-3, unit: 2e-3, zero: 0.3, parts: vec![0.2, -0.1] };
+        let speed = ParasiticForce { along: Along::Velocity, zero: 0.0, parts: vec![0.4, 0.5], ..place.clone() };
+        let [position, velocity, at_rest] = [[4e-3, -1e-3], [1e-3, -5e-3], [0.0; 2]];
+        for force in [place, speed] {
+            let (form, values) = force.element();
+            let mut shown = [0.0; 2];
+            let mut reading = Reading {
+                start: 0.0,
+                step: 1e-3,
+                filter_width: 0.0,
+                position: &position,
+                velocity: &velocity,
+                acceleration: &at_rest,
+                force: &mut shown,
+            };
+            PARASITIC_FORCE.act_on_reading(form, &values, &mut reading);
+            for (at, shown) in shown.into_iter().enumerate() {
+                assert!((shown - force.at(position[at], velocity[at])).abs() < 1e-15, "{force:?}");
+            }
+        }
     }
 
     /// Of a spring that stiffens, whose surface the nominal law puts far in the contact, nothing of free motion is told.

@@ -101,7 +101,7 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::circumstances::Circumstances;
-    use super::super::outcome::identify;
+    use super::super::identification::identify;
     use super::super::testing::TestContact;
     use crate::diagnose::verdict::Verdict;
 

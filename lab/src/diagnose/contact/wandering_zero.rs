@@ -154,9 +154,10 @@ impl Rows {
 mod tests {
     use super::super::circumstances::Circumstances;
     use super::super::data::Data;
+    use super::super::identification::identify;
     use super::super::model::{OwnValues, index};
     use super::super::nominal::nominal_fit;
-    use super::super::outcome::{Outcome, identify};
+    use super::super::outcome::Outcome;
     use super::super::testing::TestContact;
     use super::{values_of_zero, wanders};
     use crate::diagnose::interval::NORMAL_97_5;

@@ -147,8 +147,8 @@ pub(super) fn free(fit: &Fit) -> usize {
 mod tests {
     use super::super::circumstances::Circumstances;
     use super::super::fit::Effort;
+    use super::super::identification::identify;
     use super::super::nominal::nominal_fit;
-    use super::super::outcome::identify;
     use super::super::testing::TestContact;
     use super::*;
     use crate::diagnose::term::Term;

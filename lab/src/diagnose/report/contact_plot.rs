@@ -20,7 +20,7 @@ fn by(outcome: &Outcome, residual: &[Vec<f64>], trial: usize) -> Vec<f32> {
 
 /// Force by the law with the learned element; empty where there is none.
 fn by_learned(outcome: &Outcome, trial: usize) -> Vec<f32> {
-    outcome.learned.as_ref().map_or_else(Vec::new, |curve| by(outcome, &curve.residual, trial))
+    outcome.learned.as_ref().map_or_else(Vec::new, |curve| by(outcome, curve.residual(), trial))
 }
 
 /// Depth below the fitted surface; the position itself where the spring pulls as well, which has no surface.

@@ -8,18 +8,22 @@ use super::diagnosis::{Correlations, Diagnosis, Evidence, Finding, FitQuality, L
 use super::summary;
 use crate::diagnose::contact::crosstalk::Crosstalk;
 use crate::diagnose::contact::data::Data;
+use crate::diagnose::contact::fit::Fit;
+use crate::diagnose::contact::free_curve::Curve;
 use crate::diagnose::contact::held_out::rms;
-use crate::diagnose::contact::learned::LearnedCurve;
+use crate::diagnose::contact::learned::{Learned, LearnedCurve};
+use crate::diagnose::contact::learned_damping::DampingCurve;
 use crate::diagnose::contact::model::index;
 use crate::diagnose::contact::outcome::Outcome;
 use crate::diagnose::contact::parasitic_force::{Along, ParasiticForce};
+use crate::diagnose::contact::rival_curves::Rival;
 use crate::diagnose::contact::trial::ContactTrial;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::interval::NORMAL_97_5;
 use crate::diagnose::phase;
 use crate::diagnose::term::Term;
 use crate::diagnose::verdict::Verdict;
-use crate::effects::{self, Effect as _, LEARNED, LEARNED_FORM, Place, slug};
+use crate::effects::{self, Effect as _, PARASITIC_FORCE, Place, slug};
 use crate::page::quantity;
 use crate::rig::{Contact, Coordinate, Rig};
 
@@ -35,7 +39,7 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
     let residuals = residuals(outcome);
     let band_hz = 0.5 / outcome.nominal.model.scales.step_s;
-    let learned = outcome.learned.as_ref().map(|curve| rms(&data(outcome), &curve.residual));
+    let learned = outcome.learned.as_ref().map(|curve| rms(&data(outcome), curve.residual()));
     let fit = FitQuality { learned, ..residuals.quality(CHANNEL, coordinate.force_unit(), band_hz) };
     let residual = contact_residual(outcome, coordinate);
     let is_good = outcome.verdict == Verdict::NoMismatch;
@@ -100,14 +104,13 @@ pub fn data(outcome: &Outcome) -> Data<'_> {
 #[must_use]
 pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
     let named = if outcome.named.is_empty() { &outcome.nominal } else { &outcome.chosen };
-    let fit = outcome.learned.as_ref().map_or(named, |curve| &curve.fit);
+    let fit = outcome.learned.as_ref().map_or(named, Learned::fit);
     let ends = match &outcome.learned {
         Some(curve) => Some(curve.intervals(&outcome.intervals)),
         None => (!outcome.named.is_empty()).then(|| outcome.intervals.clone()),
     };
     let ends = ends.map(|ends| channel::all_told(&fit.values, &ends));
-    let first = fit.model.nominal_count();
-    let mut rig = with_law(given, &fit.model.terms, &fit.values, first, outcome.trials.len(), ends.as_deref());
+    let mut rig = with_law(given, fit, outcome, ends.as_deref());
     if outcome.verdict == Verdict::NoMismatch {
         rig.contact = given.contact;
     }
@@ -117,21 +120,11 @@ pub fn refined(given: &Rig, outcome: &Outcome) -> Rig {
 /// The `improved` rig with each law that the recordings do not tell from the answer's in the place of it.
 #[must_use]
 pub fn alternative_rigs(improved: &Rig, outcome: &Outcome) -> Vec<Rig> {
-    let each = outcome.alternatives.iter().map(|other| {
-        let fit = &other.fit;
-        with_law(improved, &fit.model.terms, &fit.values, fit.model.nominal_count(), outcome.trials.len(), None)
-    });
-    each.collect()
+    outcome.alternatives.iter().map(|other| with_law(improved, &other.fit, outcome, None)).collect()
 }
 
-fn with_law(
-    given: &Rig,
-    terms: &[Term],
-    values: &[f64],
-    first: usize,
-    trials: usize,
-    intervals: Option<&[[f64; 2]]>,
-) -> Rig {
+/// The rig `given` with the law `fit` of the contact of `outcome`, the `intervals` of its values, and the force of free motion where there is one.
+fn with_law(given: &Rig, Fit { model, values, .. }: &Fit, outcome: &Outcome, intervals: Option<&[[f64; 2]]>) -> Rig {
     let mut rig = given.clone();
     rig.contact = given.contact.map(|contact| Contact {
         stiffness: values[index::STIFFNESS],
@@ -140,13 +133,17 @@ fn with_law(
         ..contact
     });
     rig.effects.retain(|table| effects::find(&table.name).is_some_and(|e| e.spec().place == Place::Drive));
-    let mut next = first;
-    for term in terms {
+    let mut next = model.nominal_count();
+    for term in &model.terms {
         let own = next..next + term.parameters().len();
-        next += term.all_parameters(trials).len();
+        next += term.all_parameters(outcome.trials.len()).len();
         let ends: Option<Vec<(f64, f64)>> =
             intervals.map(|all| all[own.clone()].iter().map(|ends| (ends[0], ends[1])).collect());
         rig.effects.push(effects::to_table(term.effect, term.form, given.coordinate, &values[own], ends.as_deref()));
+    }
+    if let Some(force) = &outcome.parasitic {
+        let (form, values) = force.element();
+        rig.effects.push(effects::to_table(PARASITIC_FORCE, form, given.coordinate, &values, None));
     }
     rig
 }
@@ -165,14 +162,21 @@ fn physics(outcome: &Outcome, residuals: &Residuals, coordinate: Coordinate, loc
         if let Some(force) = &outcome.parasitic {
             rest.acts_in = Place::Sensor.name();
             rest.statement = format!("{} No effect of the list is that.", parasitic_words(force, outcome, coordinate));
+            PARASITIC_FORCE.spec().forms[force.element().0].equation.clone_into(&mut rest.equation);
+            if named.is_empty() {
+                let [_, refitted, improved] = residuals.of_laws;
+                rest.evidence.held_out_gain = residuals.share_of(refitted, improved);
+            }
         }
         if let Some(curve) = &outcome.learned {
             // Where nothing is named the reader knows refitted values alone.
             let [_, refitted, improved] = residuals.of_laws;
             let without = if named.is_empty() { refitted } else { improved };
-            rest.evidence.held_out_gain = residuals.share_of(without, rms(&data(outcome), &curve.residual));
+            rest.evidence.held_out_gain = residuals.share_of(without, rms(&data(outcome), curve.residual()));
             rest.statement.push_str(&learned_words(curve, outcome, rest.evidence.held_out_gain, coordinate));
-            LEARNED.spec().forms[LEARNED_FORM].equation.clone_into(&mut rest.equation);
+            if let Some(Term { effect, form }) = curve.fit().model.terms.last() {
+                effect.spec().forms[*form].equation.clone_into(&mut rest.equation);
+            }
         }
         rest
     });
@@ -225,6 +229,28 @@ fn coupling(Crosstalk { part, memory_s }: Crosstalk) -> String {
     format!("The force reading {what} by a factor of {}.", quantity::short(part))
 }
 
+/// That a free curve does better than a name, or than the nominal law alone.
+fn rival_words(rival: &Rival) -> String {
+    let along = match rival.curve {
+        Curve::Place => "the depth",
+        Curve::PlaceAndDirection => "the depth, one on the way in and one on the way out",
+        Curve::Speed => "the speed in contact",
+        Curve::SpeedTimesDepth => "the speed in contact, in proportion to the depth",
+    };
+    let likelier = format!("is likelier, by {:.0} nats beyond the price of its values", rival.gain);
+    match (rival.name, rival.is_refuted) {
+        (Some(name), true) => format!(
+            "{name} was found and is not told: in its place a free curve over {along} {likelier}. The force goes with that otherwise than by the effect's law."
+        ),
+        (Some(name), false) => format!(
+            "{name} takes the most of what is missing, but in its place a free curve over {along} {likelier}: its law is not quite what acts."
+        ),
+        (None, _) => format!(
+            "Beside the refitted law a free curve over {along} {likelier}: something small is missing that no effect of the list explains."
+        ),
+    }
+}
+
 /// On what a parasitic force depends, and how large it is in these recordings.
 fn parasitic_words(force: &ParasiticForce, outcome: &Outcome, coordinate: Coordinate) -> String {
     let added: Vec<f64> = outcome.trials.iter().flat_map(|trial| force.of(trial)).collect();
@@ -240,18 +266,27 @@ fn parasitic_words(force: &ParasiticForce, outcome: &Outcome, coordinate: Coordi
     )
 }
 
-/// What a learned curve looks like: only what stands out of the noise.
-fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate: Coordinate) -> String {
-    let (force, length) = (coordinate.force_unit(), coordinate.position_unit());
-    let shape = curve.shape();
-    let notable = (3.0 * outcome.expected_noise).max(LEAST_FEATURE * shape.range);
+/// What a learned curve takes, a `share`, and what it looks like.
+fn learned_words(learned: &Learned, outcome: &Outcome, share: f64, coordinate: Coordinate) -> String {
     // No rounding shall make "all" of nearly all.
     let share =
         if share > 0.99 { format!("{:.1}\u{a0}%", 100.0 * share.min(0.999)) } else { quantity::percent(100.0 * share) };
-    let left = quantity::rounded(rms(&data(outcome), &curve.residual), force, 3);
-    let mut text = format!(
-        " A curve over depth and direction that is learned from the recordings takes {share} of it on held-out rows and leaves {left}"
-    );
+    let left = quantity::rounded(rms(&data(outcome), learned.residual()), coordinate.force_unit(), 3);
+    let (along, shape) = match learned {
+        Learned::OverDepth(curve) => ("depth and direction", depth_words(curve, outcome, coordinate)),
+        Learned::OverSpeed(curve) => ("the speed in contact", speed_words(curve, coordinate)),
+    };
+    format!(
+        " A curve over {along} that is learned from the recordings takes {share} of it on held-out rows and leaves {left}{shape}"
+    )
+}
+
+/// What a curve over depth and direction looks like: only what stands out of the noise.
+fn depth_words(curve: &LearnedCurve, outcome: &Outcome, coordinate: Coordinate) -> String {
+    let (force, length) = (coordinate.force_unit(), coordinate.position_unit());
+    let shape = curve.shape();
+    let notable = (3.0 * outcome.expected_noise).max(LEAST_FEATURE * shape.range);
+    let mut text = String::new();
     if let Some(softening) = shape.softening.filter(|softening| softening.fall > notable) {
         let [from, to] = softening.between;
         let (fall, between) = (quantity::rounded(softening.fall, force, 2), quantity::between(from, to, length));
@@ -259,12 +294,27 @@ fn learned_words(curve: &LearnedCurve, outcome: &Outcome, share: f64, coordinate
     }
     if let Some(lower) = shape.loop_force.filter(|lower| lower.abs() > notable) {
         let side = if lower > 0.0 { "below" } else { "above" };
-        let (joint, by) = (if text.contains(": ") { ";" } else { ":" }, quantity::rounded(lower.abs(), force, 2));
+        let (joint, by) = (if text.is_empty() { ":" } else { ";" }, quantity::rounded(lower.abs(), force, 2));
         text.push_str(&format!("{joint} the way out lies {by} {side} the way in, in the mean, however slow"));
     }
     let [usual, most] = curve.half_widths().map(|half| quantity::rounded(half, force, 2));
     text + &format!(
         ". The force on the way in is known to ±{usual} at half of the depths and to ±{most} at all (95 %)."
+    )
+}
+
+/// What a curve over the speed adds at its ends.
+fn speed_words(curve: &DampingCurve, coordinate: Coordinate) -> String {
+    let force = |value: f64| quantity::rounded(value, coordinate.force_unit(), 2);
+    let (fastest, [[inwards, in_half], [outwards, out_half]]) = curve.ends();
+    let speed = quantity::rounded(fastest, coordinate.velocity_unit(), 2);
+    let depth = if curve.grows_with_depth { " at the greatest depth" } else { "" };
+    format!(
+        ": beside the refitted damping {} (±{}, 95 %) at {speed} inwards and {} (±{}) outwards{depth}.",
+        force(inwards),
+        force(in_half),
+        force(outwards),
+        force(out_half)
     )
 }
 
@@ -333,9 +383,12 @@ fn findings(outcome: &Outcome, coordinate: Coordinate) -> Vec<Finding> {
         );
         tell(summary::EFFORT_IN_FORCE, "force", &text);
     }
+    for rival in &outcome.rivals {
+        tell("curve_in_place_of_effect", "force", &rival_words(rival));
+    }
     if let Some(force) = &outcome.parasitic {
         let text = format!(
-            "{} The contact was judged by the force without it, and so are the figures and pictures; the model does not hold it.",
+            "{} It is the element parasitic_force of the improved rig file, and the contact was judged by the force without it.",
             parasitic_words(force, outcome, coordinate)
         );
         tell(summary::PARASITIC_FORCE, "force", &text);

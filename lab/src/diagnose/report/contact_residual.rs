@@ -33,7 +33,8 @@ fn rows(outcome: &Outcome) -> Vec<ResidualRow> {
     let scales = &model.scales;
     let before = before(outcome);
     let mut rows = Vec::new();
-    for (number, trial) in outcome.trials.iter().enumerate() {
+    let trials = outcome.parasitic.as_ref().map(|force| force.taken_off(&outcome.trials));
+    for (number, trial) in trials.as_ref().unwrap_or(&outcome.trials).iter().enumerate() {
         let surface = model.surface(&outcome.chosen.values, number);
         let pull = pull(trial, surface);
         for row in (0..trial.len()).filter(|row| outcome.weights[number][*row] > 0.0) {
@@ -81,7 +82,7 @@ fn pull(trial: &ContactTrial, surface: f64) -> impl Fn(f64) -> bool {
 /// all that is above the noise.
 fn gained(outcome: &Outcome, before: &[Vec<f64>], trial: usize, row: usize) -> f64 {
     let left = match (&outcome.learned, outcome.verdict) {
-        (Some(curve), _) => curve.residual[trial][row].powi(2),
+        (Some(curve), _) => curve.residual()[trial][row].powi(2),
         (None, Verdict::Unknown) => outcome.noise[trial][row],
         (None, _) => outcome.residuals[2][trial][row].powi(2),
     };

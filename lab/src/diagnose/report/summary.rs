@@ -78,15 +78,18 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                     )
                 },
             );
+            if holds_parasitic_force(answer) {
+                let course = course(fit, lacks, "it");
+                return format!(
+                    "The force reading holds a force that acts in free motion, too, which is no effect of the list: {course}. The sensors alone would leave {expected_noise}."
+                );
+            }
             let what = if holds_effort(answer) {
                 "The force reading holds effort of the drive, which is no effect of the list"
-            } else if holds_parasitic_force(answer) {
-                "The force reading holds a force that acts in free motion, too, which is no effect of the list"
             } else {
                 "Something is missing that no effect of the list explains"
             };
-            let left = if holds_parasitic_force(answer) { "; without it" } else { ":" };
-            format!("{what}{left} {before} are left where the sensors leave {expected_noise}.{place}")
+            format!("{what}: {before} are left where the sensors leave {expected_noise}.{place}")
         }
         Verdict::Explained | Verdict::PartlyExplained => {
             let names: Vec<String> =
@@ -97,7 +100,7 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
                 )
             } else if answer.verdict == Verdict::PartlyExplained && holds_parasitic_force(answer) {
                 format!(
-                    " That is of the force without one that acts in free motion, too, which is no effect of the list: the sensors alone would leave {expected_noise}."
+                    " That is with a force that acts in free motion, too, which is no effect of the list: the sensors alone would leave {expected_noise}."
                 )
             } else if answer.verdict == Verdict::PartlyExplained {
                 format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")

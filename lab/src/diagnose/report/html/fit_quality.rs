@@ -107,8 +107,9 @@ fn explained(answer: &Diagnosis, goodness: &FitQuality) -> Markup {
     let name = channel(goodness.channel);
     let is_named = answer.physics.iter().any(|one| one.name != "unknown" && one.channel == goodness.channel);
     html! {
-        @if !is_named && is_within_noise(goodness) && goodness.channel == "force" && holds_parasitic_force(answer) {
-            "Without the force of free motion refitted values leave no more than the expected noise: beside it nothing is missing there."
+        @if !is_named && goodness.channel == "force" && holds_parasitic_force(answer) {
+            "Of the mean square that refitted values leave in the " (name) " above the noise, the force of free motion takes away "
+            strong { (share(goodness.explained_share)) } "."
         } @else if !is_named && is_within_noise(goodness) {
             "Refitted values leave no more in the " (name) " than the expected noise: nothing is missing there."
         } @else if names_physics(answer) {

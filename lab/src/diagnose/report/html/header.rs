@@ -54,8 +54,8 @@ fn meaning(answer: &Diagnosis) -> Markup {
             " above the noise. What stays, " (rounded(fit.improved, fit.unit, 3)) ", is " (multiple(fit.improved / fit.noise_floor)) ": the real laws are not quite those that are named."
         },
         Verdict::PartlyExplained if holds_parasitic_force(answer) => html! {
-            "A " a href="#physics" { "force that acts in free motion, too" } ", is no effect of the list, and was taken off. Of the mean square that refitted values leave in the "
-            (channel(fit.channel)) " without it, above the noise, the physics below takes away " (share(fit.explained_share)) "."
+            "A " a href="#physics" { "force that acts in free motion, too" } ", is no effect of the list. Of the mean square that refitted values leave in the "
+            (channel(fit.channel)) " above the noise, the physics below takes away " (share(fit.explained_share)) " with it."
         },
         Verdict::PartlyExplained => html! {
             "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
@@ -73,7 +73,7 @@ fn unknown(answer: &Diagnosis) -> Markup {
             a href="#physics" { "what couples in" } " below; the drive was judged by the force without it."
         } @else if holds_parasitic_force(answer) {
             "The force sensor shows a force where nothing is touched, which no contact has. It was taken off, and the contact was judged by what is left; see "
-            a href="#physics" { "what it goes with" } " below. No effect of the list is that, so it is not named."
+            a href="#physics" { "what it goes with" } " below. No effect of the list is that, so it is not named; the improved rig file holds it as a curve."
         } @else {
             "The recordings hold something real that the simulation lacks, and none of the " (answer.checked.len())
             " effects that were tried explains it. So it is not named: a wrong name would be worse than none."
