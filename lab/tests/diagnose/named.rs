@@ -101,6 +101,8 @@ fn a_force_of_free_motion_is_modelled() {
         improved <= 1.3 * floor && improved < 0.5 * refitted,
         "floor {floor}, {refitted} refitted, {improved} improved"
     );
+    // Nothing is named, and the page draws what was learned.
+    assert_eq!(answer["fit"]["learned"], answer["fit"]["improved"]);
     let again = case.found(&["--rig", "improved.toml", "trial-1.csv", "trial-2.csv"]);
     assert_eq!((&again["verdict"], &again["physics"]), (&"no_mismatch".into(), &serde_json::json!([])), "{again:#}");
 }

@@ -57,6 +57,14 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// What is left of rows that taught nothing with what was learned and has no name, a column a trial: with the learned element, or where nothing is named with the
+    /// force of free motion; `None` where there is neither.
+    #[must_use]
+    pub fn left_by_learned(&self) -> Option<&Vec<Vec<f64>>> {
+        let by_force = (self.parasitic.is_some() && self.named.is_empty()).then_some(&self.residuals[2]);
+        self.learned.as_ref().map(Learned::residual).or(by_force)
+    }
+
     /// Takes the user's own simulations, one a trial in their order, for what the rig file as given predicts.
     pub fn compare_with(&mut self, simulations: &[Recording]) {
         for ((trial, run), residual) in self.trials.iter().zip(simulations).zip(&mut self.residuals[0]) {

@@ -18,9 +18,9 @@ fn by(outcome: &Outcome, residual: &[Vec<f64>], trial: usize) -> Vec<f32> {
     rows.map(|(force, left)| (force - left) as f32).collect()
 }
 
-/// Force by the law with the learned element; empty where there is none.
+/// Force with what was learned and has no name; empty where there is nothing.
 fn by_learned(outcome: &Outcome, trial: usize) -> Vec<f32> {
-    outcome.learned.as_ref().map_or_else(Vec::new, |curve| by(outcome, curve.residual(), trial))
+    outcome.left_by_learned().map_or_else(Vec::new, |residual| by(outcome, residual, trial))
 }
 
 /// Depth below the fitted surface; the position itself where the spring pulls as well, which has no surface.

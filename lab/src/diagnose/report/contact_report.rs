@@ -39,7 +39,7 @@ pub fn contact_report(outcome: &Outcome, rig: &Rig) -> (Diagnosis, PlotData) {
     let coordinate = rig.coordinate;
     let residuals = residuals(outcome);
     let band_hz = 0.5 / outcome.nominal.model.scales.step_s;
-    let learned = outcome.learned.as_ref().map(|curve| rms(&data(outcome), curve.residual()));
+    let learned = outcome.left_by_learned().map(|residual| rms(&data(outcome), residual));
     let fit = FitQuality { learned, ..residuals.quality(CHANNEL, coordinate.force_unit(), band_hz) };
     let residual = contact_residual(outcome, coordinate);
     let is_good = outcome.verdict == Verdict::NoMismatch;

@@ -81,8 +81,8 @@ fn pull(trial: &ContactTrial, surface: f64) -> impl Fn(f64) -> bool {
 /// What the answer takes of a row: the learned element's law where there is one, else the named effects', and where nothing is named
 /// all that is above the noise.
 fn gained(outcome: &Outcome, before: &[Vec<f64>], trial: usize, row: usize) -> f64 {
-    let left = match (&outcome.learned, outcome.verdict) {
-        (Some(curve), _) => curve.residual()[trial][row].powi(2),
+    let left = match (outcome.left_by_learned(), outcome.verdict) {
+        (Some(residual), _) => residual[trial][row].powi(2),
         (None, Verdict::Unknown) => outcome.noise[trial][row],
         (None, _) => outcome.residuals[2][trial][row].powi(2),
     };
