@@ -77,6 +77,12 @@ fn the_smoothed_corner_is_the_mean_over_its_width() {
     }
 }
 
+/// Of a tool that rests.
+fn reading<'a>(at_rest: &'a [f64], step: f64, force: &'a mut [f64]) -> Reading<'a> {
+    let (position, velocity, acceleration) = (at_rest, at_rest, at_rest);
+    Reading { start: 0.0, step, filter_width: 0.0, position, velocity, acceleration, force }
+}
+
 #[test]
 fn a_delay_shifts_a_wave_and_a_lag_filters_it() {
     let (step, pulse) = (5e-3, std::f64::consts::TAU * 12.0);
@@ -85,30 +91,12 @@ fn a_delay_shifts_a_wave_and_a_lag_filters_it() {
     let at_rest = vec![0.0; rows.len()];
     for lag in [0.2e-3, 2.5e-3, 7.1e-3] {
         let mut force = rows.clone();
-        Reading {
-            start: 0.0,
-            step,
-            filter_width: 0.0,
-            position: &at_rest,
-            velocity: &at_rest,
-            acceleration: &at_rest,
-            force: &mut force,
-        }
-        .delay(lag);
+        reading(&at_rest, step, &mut force).delay(lag);
         let late: Vec<f64> = (0..800).map(|row| wave(f64::from(row) * step - lag)).collect();
         // Six points of a wave at 0.06 of the rate: the next term of the series is below 1e-3.
         assert!(apart(&force, &late, 10) < 1e-3, "{lag}");
         let mut force = rows.clone();
-        Reading {
-            start: 0.0,
-            step,
-            filter_width: 0.0,
-            position: &at_rest,
-            velocity: &at_rest,
-            acceleration: &at_rest,
-            force: &mut force,
-        }
-        .low_pass(lag);
+        reading(&at_rest, step, &mut force).low_pass(lag);
         let (size, angle) = ((1.0 + (pulse * lag).powi(2)).sqrt().recip(), (pulse * lag).atan());
         let slow: Vec<f64> = (0..800).map(|row| size * (pulse * f64::from(row) * step - angle).sin()).collect();
         // Straight lines between rows lose (pulse step)^2 / 12 of the wave.

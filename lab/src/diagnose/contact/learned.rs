@@ -67,7 +67,8 @@ impl Learned {
         let mut ends: Vec<[f64; 2]> = law.to_vec();
         ends.extend(values[law.len()..forces].iter().map(|value| [*value; 2]));
         let of_force = |(value, deviation): (&f64, &f64)| {
-            let half = NORMAL_97_5 * deviation;
+            // A force that is held by convention has no interval.
+            let half = if *deviation > 0.0 { NORMAL_97_5 * deviation } else { f64::INFINITY };
             [value - half, value + half]
         };
         ends.extend(values[forces..].iter().zip(&deviations).map(of_force));

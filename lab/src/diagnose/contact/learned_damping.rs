@@ -156,6 +156,7 @@ impl<'a> Element<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::held_out::rms;
+    use super::super::learned::Learned;
     use super::super::nominal::nominal_fit;
     use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
@@ -165,16 +166,12 @@ mod tests {
     #[test]
     fn a_damper_that_differs_by_direction_is_learned_over_the_speed() {
         for curve in [Curve::Speed, Curve::SpeedTimesDepth] {
-            let trials = [1, 2].map(|seed| {
-                let mut trial = TestContact::PLAIN.trial(seed);
-                let deepest = trial.position.iter().copied().fold(0.0, f64::max);
-                for row in 0..trial.len() {
-                    let (x, v) = (trial.position[row].max(0.0), trial.velocity[row].max(0.0));
-                    let part = if curve == Curve::Speed { f64::from(x > 0.0) } else { x / deepest };
-                    trial.force[row] += 8.0 * v * part;
-                }
-                trial
-            });
+            let deepest = TestContact::PLAIN.trial(1).position.iter().copied().fold(0.0, f64::max);
+            let valve = |x: f64, v: f64| {
+                let part = if curve == Curve::Speed { f64::from(x > 0.0) } else { x.max(0.0) / deepest };
+                8.0 * v.max(0.0) * part
+            };
+            let trials = [1, 2].map(|seed| TestContact::PLAIN.trial_beside(seed, valve));
             let data = Data::new(&trials);
             let law = nominal_fit(&data, &TestContact::nominal());
             let found = learned_damping(&data, &law, curve).expect("unseen rows pay for it");
@@ -183,6 +180,10 @@ mod tests {
             let left = rms(&data, &found.residual);
             assert!((left / FORCE_NOISE - 1.0).abs() < 0.05, "{curve:?}: {left} N");
             let (speed, [[inwards, in_half], [outwards, out_half]]) = found.ends();
+            // The knot at rest is held, and has no interval.
+            let ends = Learned::OverSpeed(found.clone()).intervals(&vec![[0.0; 2]; law.values.len()]);
+            let forces = &ends[ends.len() - DAMPING_KNOTS..];
+            assert!((0..DAMPING_KNOTS).all(|knot| forces[knot][0].is_finite() == (knot != REST)), "{forces:?}");
             // What the nominal damping has besides is the line that both ways share.
             let by_valve = inwards + outwards;
             let half = in_half.hypot(out_half);

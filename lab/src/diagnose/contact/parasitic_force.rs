@@ -191,16 +191,7 @@ mod tests {
 
     /// What is found where `force` acts beside `contact`, as a function of position and velocity.
     fn found(contact: &TestContact, force: impl Fn(f64, f64) -> f64) -> Outcome {
-        let trials = || -> Vec<ContactTrial> {
-            let held = [1, 2].map(|seed| {
-                let mut trial = contact.trial(seed);
-                let motion = trial.position.iter().zip(&trial.velocity);
-                let added: Vec<f64> = motion.map(|(position, velocity)| force(*position, *velocity)).collect();
-                trial.force.iter_mut().zip(added).for_each(|(force, added)| *force += added);
-                trial
-            });
-            held.into()
-        };
+        let trials = || [1, 2].map(|seed| contact.trial_beside(seed, &force)).to_vec();
         identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap()
     }
 

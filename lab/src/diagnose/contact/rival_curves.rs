@@ -131,22 +131,12 @@ mod tests {
     use super::super::identification::identify;
     use super::super::outcome::Outcome;
     use super::super::testing::TestContact;
-    use super::super::trial::ContactTrial;
     use super::*;
     use crate::diagnose::verdict::Verdict;
 
     /// What is found where `force` acts beside the plain contact, as a function of depth and velocity.
     fn found(force: impl Fn(f64, f64) -> f64) -> Outcome {
-        let trials = || -> Vec<ContactTrial> {
-            let held = [1, 2].map(|seed| {
-                let mut trial = TestContact::PLAIN.trial(seed);
-                let motion = trial.position.iter().zip(&trial.velocity);
-                let added: Vec<f64> = motion.map(|(position, velocity)| force(*position, *velocity)).collect();
-                trial.force.iter_mut().zip(added).for_each(|(force, added)| *force += added);
-                trial
-            });
-            held.into()
-        };
+        let trials = || [1, 2].map(|seed| TestContact::PLAIN.trial_beside(seed, &force)).to_vec();
         identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap()
     }
 

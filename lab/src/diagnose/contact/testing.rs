@@ -96,6 +96,15 @@ impl TestContact {
         Self::seen(&recording)
     }
 
+    /// With `more` force by the motion as it is seen, position and velocity, N.
+    pub fn trial_beside(&self, seed: u64, more: impl Fn(f64, f64) -> f64) -> ContactTrial {
+        let mut trial = self.trial(seed);
+        for row in 0..trial.len() {
+            trial.force[row] += more(trial.position[row], trial.velocity[row]);
+        }
+        trial
+    }
+
     /// With noise beside the sensor's white one, of deviation `size`, N, and a memory of so many `rows`.
     pub fn remembering(&self, rows: f64, size: f64, seed: u64) -> ContactTrial {
         let mut recording = self.recording(seed);
