@@ -5,18 +5,16 @@ use palpate_cases::{ConcealedRig, Excursion};
 use super::monitor::Violation;
 use super::simulated_bed::{Supervisor, truncate};
 use super::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
+use super::trial_of_method::watched_bed::WatchedBed;
 use crate::experiment_design::Limits;
 use crate::recording::Recording;
 use crate::simulate::{CommandSource as _, Measurement};
 
 /// A concealed rig.
 pub struct ConcealedBed {
-    /// The rig.
-    pub rig: ConcealedRig,
-    /// Greatest share of a limit that the true motion used, over all trials: position, speed, force, effort.
-    pub used: [f64; 4],
-    /// Seconds of all trials.
-    pub seconds: f64,
+    rig: ConcealedRig,
+    used: [f64; 4],
+    seconds: f64,
 }
 
 impl ConcealedBed {
@@ -88,6 +86,20 @@ impl TestBed for ConcealedBed {
         truncate(&mut recording, rows);
         let ending = if recording.time.is_empty() { Ending::Failed("nothing was recorded".to_owned()) } else { ending };
         Ok(TrialOutcome { recording: Some(recording), ending })
+    }
+}
+
+impl WatchedBed for ConcealedBed {
+    fn used(&self) -> [f64; 4] {
+        self.used
+    }
+
+    fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    fn rich_reference(&mut self) -> Vec<f64> {
+        self.rig.rich_reference()
     }
 }
 
