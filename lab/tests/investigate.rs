@@ -5,4 +5,6 @@ mod investigate {
     mod design;
     mod emulated_drive;
     mod simulated_bed;
+    #[cfg(unix)]
+    mod sources;
 }

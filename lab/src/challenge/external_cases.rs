@@ -80,8 +80,16 @@ fn truth_file(folder: &Path) -> Result<PathBuf> {
 /// # Errors
 /// The folder cannot be read.
 pub fn trials(folder: &Path) -> Result<Vec<String>> {
-    let is_trial = |name: &String| name.starts_with("trial-") && name.ends_with(".csv");
-    Ok(names(folder)?.into_iter().filter(is_trial).collect())
+    tables(folder, "trial-")
+}
+
+/// Names of the CSV files in `folder` that begin with `prefix`, sorted.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn tables(folder: &Path, prefix: &str) -> Result<Vec<String>> {
+    let is_it = |name: &String| name.starts_with(prefix) && name.ends_with(".csv");
+    Ok(names(folder)?.into_iter().filter(is_it).collect())
 }
 
 /// Names of all files in `folder`, sorted.

@@ -333,11 +333,16 @@ fn why(plan: &Plan, standing: &Standing) -> String {
     )
 }
 
+/// What a file calls the positions of a reference.
+#[must_use]
+pub fn reference_column(rig: &Rig) -> &'static str {
+    if rig.coordinate == Coordinate::Rotary { "reference_rad" } else { "reference_m" }
+}
+
 /// The reference as a file: `t_s` and `reference_m` or `reference_rad`.
 #[must_use]
 pub fn reference_csv(reference: &[f64], rate_hz: f64, rig: &Rig) -> String {
-    let name = if rig.coordinate == Coordinate::Rotary { "reference_rad" } else { "reference_m" };
-    let mut text = format!("t_s,{name}\n");
+    let mut text = format!("t_s,{}\n", reference_column(rig));
     for (row, position) in reference.iter().enumerate() {
         text += &format!("{},{position}\n", row as f64 / rate_hz);
     }

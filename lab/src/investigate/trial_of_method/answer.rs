@@ -22,17 +22,17 @@ impl Answer {
         Self { named: state.physics.clone(), alternatives: state.alternatives.clone() }
     }
 
-    /// Whether `truth` is named and nothing else.
+    /// Whether `names` are named and nothing else, in whatever order.
     #[must_use]
-    pub fn is_right(&self, truth: &[String]) -> bool {
+    pub fn names_exactly(&self, names: &[String]) -> bool {
         let set = |names: &[String]| names.iter().cloned().collect::<BTreeSet<String>>();
-        set(&self.named) == set(truth)
+        set(&self.named) == set(names)
     }
 
-    /// The same, and no alternative is left.
+    /// Whether no alternative is left.
     #[must_use]
-    pub fn is_right_and_alone(&self, truth: &[String]) -> bool {
-        self.is_right(truth) && self.alternatives.is_empty()
+    pub fn is_alone(&self) -> bool {
+        self.alternatives.is_empty()
     }
 }
 
@@ -51,12 +51,10 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn an_answer_with_an_alternative_is_right_but_not_alone() {
-        let truth = names(&["adhesion"]);
-        let judged = |answer: Answer| (answer.is_right(&truth), answer.is_right_and_alone(&truth));
-        assert_eq!(judged(answer(&["adhesion"], &[])), (true, true));
-        assert_eq!(judged(answer(&["adhesion"], &["hysteresis"])), (true, false));
-        assert_eq!(judged(answer(&["adhesion", "hysteresis"], &[])), (false, false));
-        assert_eq!(judged(answer(&[], &["adhesion"])), (false, false));
+    fn names_are_a_set() {
+        let both = answer(&["adhesion", "hysteresis"], &[]);
+        assert!(both.names_exactly(&names(&["hysteresis", "adhesion"])));
+        assert!(!both.names_exactly(&names(&["adhesion"])));
+        assert!(answer(&[], &["adhesion"]).names_exactly(&[]) && !answer(&[], &["adhesion"]).is_alone());
     }
 }

@@ -5,21 +5,24 @@ use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use clap::Args;
-use palpate_cases::SimulatorKind;
 
-use super::own_rig::investigate;
+use super::listed_rig::{ListedRig, listed};
 use super::row::Row;
 use super::table::table;
-use crate::challenge::case_list::sample;
 use crate::investigate::record::write;
+use crate::terminal::printable;
 
 /// Investigate rigs whose missing physics is concealed, against fixed rich recordings of equal length
 #[derive(Debug, Clone, Args)]
 pub struct InvestigateChallengeArgs {
-    /// How many rigs, an even sample of the cases of our own simulation
+    /// How many rigs are drawn, an even sample of the cases of our own simulation; 0: only those of --source
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub cases: usize,
-    /// Seed of the rigs
+    /// Rigs of other authors beside those (--cases 0: alone): folders of NNN/rig.toml, NNN/trial-*.csv, NNN/limits.toml, NNN/rich-*.csv
+    /// and the executable NNN/bed, with truth.json as `challenge` reads it; docs/investigate.md says what each holds
+    #[arg(long, value_name = "DIR", value_delimiter = ',')]
+    pub source: Vec<PathBuf>,
+    /// Seed of the rigs that are drawn
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Most trials for each
@@ -36,27 +39,30 @@ pub struct InvestigateChallengeArgs {
 /// Runs `palpate investigate-challenge`.
 ///
 /// # Errors
-/// A folder that cannot be written, or a rig of which no diagnosis can be made.
+/// No rig is asked for, a source cannot be read, a folder that cannot be written, a bed that fails, or a rig of which no diagnosis can be
+/// made.
 pub fn run(args: &InvestigateChallengeArgs) -> Result<()> {
-    std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make {}", args.out.display()))?;
     let begun = Instant::now();
+    let rigs = listed(args)?;
+    std::fs::create_dir_all(&args.out).with_context(|| format!("cannot make {}", args.out.display()))?;
+    // A bed is called with absolute paths, whatever folder it works in.
+    let out = std::path::absolute(&args.out).with_context(|| format!("no absolute path of {}", args.out.display()))?;
+    let file = |rig: &ListedRig| out.join(format!("row-{}.json", rig.name()));
+    // A source that is at fault is told before the first rig, and not after a night.
+    rigs.iter().filter(|rig| !file(rig).exists()).try_for_each(ListedRig::check)?;
     let mut rows: Vec<Row> = Vec::new();
-    for case in sample(args.cases, &[SimulatorKind::Own], args.seed) {
-        let file = args.out.join(format!("row-{:04}.json", case.index));
-        let row = match std::fs::read_to_string(&file) {
-            Ok(text) => serde_json::from_str(&text).with_context(|| format!("{} is no score", file.display()))?,
-            Err(_) if args.minutes.is_some_and(|most| begun.elapsed().as_secs() > 60 * most) => break,
-            Err(_) => {
-                let row = investigate(args, &case)?;
-                write(&file, serde_json::to_string_pretty(&row)?.as_bytes())?;
-                row
-            }
+    for rig in &rigs {
+        let row = match std::fs::read_to_string(file(rig)) {
+            Ok(text) => rig.row(&text, &file(rig))?,
+            Err(_) if args.minutes.is_some_and(|most| begun.elapsed().as_secs() > 60 * most) => continue,
+            Err(_) => rig.investigate(args, &out.join(format!("case-{}", rig.name())))?,
         };
-        eprintln!("{}", row.line());
+        write(&file(rig), serde_json::to_string_pretty(&row)?.as_bytes())?;
+        eprintln!("{}", printable(&row.line()));
         rows.push(row);
     }
-    write(&args.out.join("rows.json"), (serde_json::to_string_pretty(&rows)? + "\n").as_bytes())?;
+    write(&out.join("rows.json"), (serde_json::to_string_pretty(&rows)? + "\n").as_bytes())?;
     let table = table(&rows);
-    println!("{table}");
-    write(&args.out.join("table.md"), table.as_bytes())
+    println!("{}", printable(&table));
+    write(&out.join("table.md"), table.as_bytes())
 }

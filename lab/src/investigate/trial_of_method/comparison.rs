@@ -8,12 +8,12 @@ use anyhow::{Context as _, Result};
 use serde::{Deserialize, Serialize};
 
 use super::answer::Answer;
-use super::watched_bed::WatchedBed;
+use super::watched_bed::{Watched, WatchedBed};
 use crate::diagnose::diagnose;
 use crate::experiment_design::Limits;
 use crate::investigate::concealed_bed::stopped_by;
-use crate::investigate::record::{Investigation, Setup, State};
-use crate::investigate::session::Session;
+use crate::investigate::record::{Investigation, Setup, State, write};
+use crate::investigate::session::{Session, reference_csv};
 use crate::investigate::test_bed::TrialRequest;
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -22,6 +22,8 @@ use crate::rig::Rig;
 pub struct Subject<'a> {
     /// The simulation.
     pub rig: &'a Rig,
+    /// Names the rig file in errors.
+    pub origin: &'a str,
     /// What was recorded to begin with.
     pub given: &'a [Recording],
     /// Limits of every trial.
@@ -41,11 +43,14 @@ pub struct Comparison {
     pub rounds: Vec<Answer>,
     /// After the first recording and as many along the fixed references.
     pub fixed: Answer,
-    /// Greatest share of each limit in a designed trial, of the true motion: position, speed, force, effort.
+    /// What was held against the limits.
+    #[serde(default)]
+    pub watched: Watched,
+    /// Greatest share of each limit in a designed trial: position, speed, force, effort.
     pub used: [f64; 4],
     /// The same in the fixed trials.
     pub used_by_fixed: [f64; 4],
-    /// Trials that the supervisor cut off.
+    /// Designed trials that the bed cut off, or whose recording passed a limit.
     pub stopped: usize,
     /// Seconds recorded in designed trials, and in fixed ones.
     pub recorded_s: [f64; 2],
@@ -75,6 +80,7 @@ impl Comparison {
             first,
             rounds,
             fixed,
+            watched: if fixed_bed.watched() == Watched::Recording { Watched::Recording } else { bed.watched() },
             used: bed.used(),
             used_by_fixed: fixed_bed.used(),
             stopped: stopped.filter(|trial| stopped_by(&trial.ending).is_some()).count(),
@@ -97,7 +103,7 @@ impl Subject<'_> {
         let mut investigation = Investigation::new(setup);
         let session = Session {
             rig: self.rig,
-            origin: "rig.toml",
+            origin: self.origin,
             given: self.given,
             folder: self.folder,
             rounds: self.rounds,
@@ -112,23 +118,35 @@ impl Subject<'_> {
     fn along_fixed(&self, count: usize, bed: &mut dyn WatchedBed) -> Result<Option<Answer>> {
         let mut trials = self.given.to_vec();
         for round in 0..count as u64 {
-            let reference = bed.rich_reference();
-            let request = TrialRequest {
-                reference: &reference,
-                rate_hz: self.given[0].rate(),
-                limits: &self.limits,
-                reference_file: self.folder,
-                recording_file: self.folder,
-                interrupted: &AtomicBool::new(false),
-                round,
-            };
-            let recording = bed.run(&request)?.recording;
-            trials.extend(recording.map(|recording| Recording { name: format!("fixed-{round}.csv"), ..recording }));
+            trials.extend(self.fixed_trial(round, bed)?);
         }
         if count == 0 {
             return Ok(None);
         }
-        let found = diagnose(self.rig, "rig.toml", &trials, &[], 1, &|_| {}).ok();
+        let found = diagnose(self.rig, self.origin, &trials, &[], 1, &|_| {}).ok();
         Ok(found.map(|found| Answer::of(&State::of(&found, Vec::new()))))
+    }
+
+    /// What was recorded along the next rich reference; reference and recording stay in `fixed-N/`.
+    fn fixed_trial(&self, round: u64, bed: &mut dyn WatchedBed) -> Result<Option<Recording>> {
+        let folder = self.folder.join(format!("fixed-{round}"));
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let (reference, rate_hz) = (bed.rich_reference(), self.given[0].rate());
+        let [reference_file, recording_file] = ["reference.csv", "recording.csv"].map(|name| folder.join(name));
+        write(&reference_file, reference_csv(&reference, rate_hz, self.rig).as_bytes())?;
+        let request = TrialRequest {
+            reference: &reference,
+            rate_hz,
+            limits: &self.limits,
+            reference_file: &reference_file,
+            recording_file: &recording_file,
+            interrupted: &AtomicBool::new(false),
+            round,
+        };
+        let recording = bed.run(&request)?.recording;
+        if let Some(recording) = &recording {
+            recording.write(&recording_file, self.rig)?;
+        }
+        Ok(recording.map(|recording| Recording { name: format!("fixed-{round}.csv"), ..recording }))
     }
 }

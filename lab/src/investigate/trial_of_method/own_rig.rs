@@ -1,13 +1,15 @@
 //! A rig of the cases' own generator, put to the three ways.
 
-use anyhow::{Context as _, Result};
+use std::path::Path;
+
+use anyhow::Result;
 use palpate_cases::excitation::Excitation;
 use palpate_cases::truth::{CaseKind, Truth};
 use palpate_cases::{CaseRequest, ConcealedRig};
 
 use super::command::InvestigateChallengeArgs;
 use super::comparison::{Comparison, Subject};
-use super::row::Row;
+use super::row::{OWN, Row};
 use crate::challenge::case_list::ListedCase;
 use crate::experiment_design::Limits;
 use crate::experiment_design::explanation::UNKNOWN;
@@ -22,11 +24,11 @@ const LIMIT_OVER_RICH: f64 = 1.5;
 /// The same of its travel.
 const TRAVEL_OVER_RICH: f64 = 1.3;
 
-/// Draws the rig of `case` and investigates it.
+/// Draws the rig of `case` and investigates it in `folder`, which is there and empty.
 ///
 /// # Errors
-/// A folder that cannot be written, or a rig of which no diagnosis can be made.
-pub fn investigate(args: &InvestigateChallengeArgs, case: &ListedCase) -> Result<Row> {
+/// A file that cannot be written, or a rig of which no diagnosis can be made.
+pub fn investigate(args: &InvestigateChallengeArgs, case: &ListedCase, folder: &Path) -> Result<Row> {
     // A rig that follows trajectories has a drive; its file says so where the effort is recorded.
     let request = CaseRequest { excitation: Some(Excitation::Poor), effort: Some(true), ..case.request.clone() };
     let concealed = || ConcealedRig::draw(args.seed, case.index, &request);
@@ -36,15 +38,20 @@ pub fn investigate(args: &InvestigateChallengeArgs, case: &ListedCase) -> Result
     let rig = Rig::parse(&rig_of_case.case.rig, "rig.toml")?;
     let given = [recording(&rig_of_case.case.trials[0], "trial-1.csv")];
     let limits = limits(&mut rig_of_case, &given[0]);
-    let folder = args.out.join(format!("case-{:04}", case.index));
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     write(&folder.join("rig.toml"), rig_of_case.case.rig.as_bytes())?;
     given[0].write(&folder.join("trial-1.csv"), &rig)?;
     let (mut bed, mut fixed_bed) = (ConcealedBed::new(rig_of_case), ConcealedBed::new(concealed()?));
-    let subject = Subject { rig: &rig, given: &given, limits, folder: &folder, rounds: args.rounds };
+    let subject = Subject { rig: &rig, origin: "rig.toml", given: &given, limits, folder, rounds: args.rounds };
     let comparison = Comparison::run(&subject, &mut bed, &mut fixed_bed)?;
-    Ok(Row { index: case.index, truth, strength, comparison })
+    Ok(Row {
+        source: OWN.to_owned(),
+        index: case.index,
+        case: None,
+        truth,
+        also: Vec::new(),
+        strength: Some(strength),
+        comparison,
+    })
 }
 
 /// What `truth` conceals; "unknown" where that is outside of the list.

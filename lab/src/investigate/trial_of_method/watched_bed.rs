@@ -1,11 +1,27 @@
 //! A bed on which the three ways are compared.
 
+use serde::{Deserialize, Serialize};
+
 use crate::investigate::test_bed::TestBed;
+
+/// What is held against the limits.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Watched {
+    /// What really happened, which neither sensors nor the investigation see.
+    #[default]
+    TrueMotion,
+    /// What was recorded: the bed tells nothing else.
+    Recording,
+}
 
 /// A test bed that is watched apart from the investigation, and that has rich references of its own.
 pub trait WatchedBed: TestBed {
     /// Greatest share of each limit that was used, over all trials: position, speed, force, effort; above one, it was passed.
     fn used(&self) -> [f64; 4];
+
+    /// Of what these are the shares.
+    fn watched(&self) -> Watched;
 
     /// Seconds of all trials.
     fn seconds(&self) -> f64;
