@@ -97,7 +97,7 @@ fn limits_used(rows: &[&Row]) -> String {
     let what = match recorded {
         0 => "the true motion used".to_owned(),
         all if all == rows.len() => "the recorded motion used".to_owned(),
-        some => format!("the true motion used (of {some} rigs only the recorded one is known)"),
+        _ => "the motion used, the true one or else the recorded one".to_owned(),
     };
     format!(
         "\nGreatest share of a limit that {what}: {:.2} in designed trials, {:.2} in fixed ones; {stopped} designed trials were cut off.\n",
@@ -185,7 +185,7 @@ mod tests {
         let mut rows = [0, 1].map(|_| row(&[], answer(&[], &[]), Vec::new(), answer(&[], &[])));
         assert!(table(&rows).contains("that the true motion used:"));
         rows[0].comparison.watched = Watched::Recording;
-        assert!(table(&rows).contains("of 1 rigs only the recorded one is known"));
+        assert!(table(&rows).contains("that the motion used, the true one or else the recorded one:"));
         rows[1].comparison.watched = Watched::Recording;
         assert!(table(&rows).contains("that the recorded motion used:"));
     }
