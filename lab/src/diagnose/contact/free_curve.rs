@@ -36,7 +36,8 @@ pub(super) fn speeds(data: &Data<'_>, law: &Fit) -> Vec<f64> {
         let touched = (0..trial.len()).filter(|row| data.weights[number][*row] > 0.0).filter(is_touched);
         fastest = touched.map(|row| trial.velocity[row].abs()).fold(fastest, f64::max);
     }
-    linear(-fastest, fastest, DAMPING_KNOTS)
+    // Squares: near rest a damper that thins with the speed, or friction, bends most.
+    linear(-1.0, 1.0, DAMPING_KNOTS).into_iter().map(|part| fastest * part * part.abs()).collect()
 }
 
 /// What one newton at each of `knots` of a `curve` beside `law` adds to each row of `data`, weighted, trial after trial: a column a knot, and of one over place and

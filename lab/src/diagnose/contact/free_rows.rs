@@ -4,6 +4,7 @@ use super::data::Data;
 use super::fit::Fit;
 use super::parasitic_force::{Along, ParasiticForce};
 use super::rest::integrated_autocorrelation;
+use super::trial::ContactTrial;
 use crate::diagnose::linalg::{energy, solve};
 
 /// Rows from which a force is looked for.
@@ -19,6 +20,8 @@ struct FreeRow {
     position: f64,
     velocity: f64,
     acceleration: f64,
+    /// Change of the acceleration, m/s^3 or rad/s^3.
+    jerk: f64,
 }
 
 /// Free motion away from the surface, where nothing of the contact acts.
@@ -27,6 +30,12 @@ pub(super) struct FreeRows {
     /// What a law leaves there, weighted.
     left: Vec<f64>,
     trials: usize,
+}
+
+/// Of the acceleration of `trial` about its `row`.
+fn jerk(trial: &ContactTrial, row: usize) -> f64 {
+    let (before, after) = (row.saturating_sub(1), (row + 1).min(trial.len() - 1));
+    (trial.acceleration[after] - trial.acceleration[before]) / (trial.time[after] - trial.time[before])
 }
 
 impl FreeRows {
@@ -58,6 +67,7 @@ impl FreeRows {
                 position: trial.position[row],
                 velocity: trial.velocity[row],
                 acceleration: trial.acceleration[row],
+                jerk: jerk(trial, row),
             });
         }
         (rows.len() >= LEAST_ROWS).then_some(Self { rows, left, trials: data.trials.len() })
@@ -87,7 +97,8 @@ impl FreeRows {
         each.filter_map(|force| self.fitted(&beside, force)).collect()
     }
 
-    /// What may be there anyway: each trial's zero and its drift, and a mass that the sensor carries.
+    /// What may be there anyway: each trial's zero and its drift, and a mass that the sensor carries. What the mass pulls with may be read before or after the position,
+    /// as where the sensor is read once the effort has changed: that goes with the jerk, which of a vibration is as the speed.
     fn beside(&self) -> Vec<Vec<f64>> {
         let column = |value: &dyn Fn(&FreeRow) -> f64| -> Vec<f64> {
             self.rows.iter().map(|row| row.weight * value(row)).collect()
@@ -96,7 +107,7 @@ impl FreeRows {
             let only = move |row: &FreeRow, value: f64| if row.trial == trial { value } else { 0.0 };
             [column(&|row| only(row, 1.0)), column(&|row| only(row, row.time))]
         });
-        let all = of_trials.chain([column(&|row| row.acceleration)]);
+        let all = of_trials.chain([column(&|row| row.acceleration), column(&|row| row.jerk)]);
         all.filter(|column| energy(column) > 0.0).collect()
     }
 

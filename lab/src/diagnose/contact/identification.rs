@@ -6,6 +6,7 @@ use super::confirmation::believed;
 use super::crosstalk::crosstalk;
 use super::data::Data;
 use super::fit::{Effort, Fit};
+use super::free_curve::Curve;
 use super::held_out::{Folds, rms};
 use super::interval::intervals;
 use super::judgement::{acts_at_a_distance, is_notable, takes_too_little, verdict};
@@ -16,7 +17,6 @@ use super::nominal::{NominalContact, law_of, nominal_fit};
 use super::outcome::Outcome;
 use super::parasitic_force::ParasiticForce;
 use super::rest::Rest;
-use super::rival_curves::Rival;
 use super::search::Search;
 use super::selection::Chosen;
 use super::trial::ContactTrial;
@@ -159,13 +159,16 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
         named.clear();
     }
     let mut rivals = Vec::new();
-    let is_told_as_a_law = search.is_told_as_a_law(&fit);
-    while is_told_as_a_law && let Some((at, rival)) = search.rival(&fit, &named) {
+    let holds = search.is_told_as_a_law(&fit);
+    while let Some((at, rival)) = search.rival(&fit, &named, holds) {
         rivals.push(rival);
         if !rival.is_refuted {
             break;
         }
         (fit, improved, named) = believed(search, &folds, search.without(&fit, at));
+        while let Some(at) = search.not_needed_beside(rival.curve, &fit, &named) {
+            (fit, improved, named) = believed(search, &folds, search.without(&fit, at));
+        }
     }
     if named.is_empty() && rivals.is_empty() && !is_something_else {
         rivals.extend(search.rival_of_nominal());
@@ -180,7 +183,7 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     };
     // Beside names that stand for the mismatch, too: what a textbook's law leaves of a real thing is no less of use for being told.
     let is_left = is_more_there || is_notable(search, &fit, &rest);
-    let learned = if is_left { learned_of(data, &fit, &rivals) } else { None };
+    let learned = if is_left { learned_of(data, &fit) } else { None };
     let mut spread = intervals(data, &fit, &rest);
     let alternatives = alternatives(search, &folds, &fit, &chosen, &refitted);
     if verdict == Verdict::Explained
@@ -211,10 +214,14 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     }
 }
 
-/// What is learned of what `fit` leaves: over the speed in contact where a curve over that did better than an effect, else over depth and direction.
-fn learned_of(data: &Data<'_>, fit: &Fit, rivals: &[Rival]) -> Option<Learned> {
-    let over_speed = rivals.iter().rev().find_map(|rival| learned_damping(data, fit, rival.curve));
-    over_speed.map(Learned::OverSpeed).or_else(|| learned(data, fit).map(Learned::OverDepth))
+/// What is learned of what `fit` leaves: over depth and direction, or over the speed in contact, whichever takes more of unseen rows.
+fn learned_of(data: &Data<'_>, fit: &Fit) -> Option<Learned> {
+    let over_depth = learned(data, fit).map(|found| (found.held_out_share, Learned::OverDepth(found)));
+    let over_speed = [Curve::Speed, Curve::SpeedTimesDepth].into_iter().filter_map(|curve| {
+        learned_damping(data, fit, curve).map(|found| (found.held_out_share, Learned::OverSpeed(found)))
+    });
+    let best = over_depth.into_iter().chain(over_speed).max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    Some(best.1)
 }
 
 /// The rig file's values, with what no file can state: timing, and where each encoder starts within its step.

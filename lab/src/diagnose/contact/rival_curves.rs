@@ -47,6 +47,8 @@ struct Beside {
     left: f64,
     /// With what each value has to earn, nats.
     price: f64,
+    /// Whether the law with it is told as a law that holds.
+    holds: bool,
 }
 
 impl Search<'_> {
@@ -58,11 +60,12 @@ impl Search<'_> {
         Rest::of(data, fit).over_sensors <= FAR_FROM_NOISE && left * left <= FAR_FROM_NOISE
     }
 
-    /// The curve that does better than one of the `named` terms of `fit`, with the place of that among the terms: the first that refutes one, or else the first.
-    pub(super) fn rival(&self, fit: &Fit, named: &[NamedTerm]) -> Option<(usize, Rival)> {
+    /// The curve that does better than one of the `named` terms of `fit`, with the place of that among the terms: the first that refutes one, or else the first. Where
+    /// what was told is no law that `holds`, only a curve counts with which it is one.
+    pub(super) fn rival(&self, fit: &Fit, named: &[NamedTerm], holds: bool) -> Option<(usize, Rival)> {
         let each = named.iter().filter_map(|named| {
             let without = self.without(fit, named.at);
-            let (beside, gain) = self.better_than(fit, &without)?;
+            let (beside, gain) = self.better_than(fit, &without, |beside| holds || beside.holds)?;
             let is_refuted = fit.energy - beside.left > (LEAST_HELD_OUT_SHARE * (without.energy - beside.left)).value();
             let name = Some(fit.model.terms[named.at].name());
             Some((named.at, Rival { name, curve: beside.curve, gain, is_refuted }))
@@ -71,17 +74,32 @@ impl Search<'_> {
         rivals.iter().find(|(_, rival)| rival.is_refuted).or(rivals.first()).copied()
     }
 
+    /// The first of the `named` terms of `fit` that is not worth [`LEAST_GAIN`] beside the `curve` in place of another; of a curve over the place none is looked for, as that
+    /// holds every law of the place.
+    pub(super) fn not_needed_beside(&self, curve: Curve, fit: &Fit, named: &[NamedTerm]) -> Option<usize> {
+        let with = with_damping(&self.data, fit, curve)?;
+        let rest = Rest::of(&self.data, &with);
+        let is_needed = |at: usize| {
+            let less = self.without(fit, at);
+            with_damping(&self.data, &less, curve).is_some_and(|without| {
+                let gain = (without.energy - with.energy) / (2.0 * rest.power * rest.correlated_rows);
+                gain - self.price_of_value(&rest) * (free(fit) - free(&less)) as f64 > LEAST_GAIN.value()
+            })
+        };
+        named.iter().map(|named| named.at).find(|at| !is_needed(*at))
+    }
+
     /// The curve beside the nominal law that does better than that alone.
     pub(super) fn rival_of_nominal(&self) -> Option<Rival> {
-        let (Beside { curve, .. }, gain) = self.better_than(&self.nominal, &self.nominal)?;
+        let (Beside { curve, .. }, gain) = self.better_than(&self.nominal, &self.nominal, |_| true)?;
         Some(Rival { name: None, curve, gain, is_refuted: false })
     }
 
-    /// The best curve beside `law`, and by how much it is likelier than `fit`, where that is more than [`LEAST_GAIN`] and of a size that is told.
-    fn better_than(&self, fit: &Fit, law: &Fit) -> Option<(Beside, f64)> {
+    /// The best curve beside `law` that `may` do, and by how much it is likelier than `fit`, where that is more than [`LEAST_GAIN`] and of a size that is told.
+    fn better_than(&self, fit: &Fit, law: &Fit, may: impl Fn(&Beside) -> bool) -> Option<(Beside, f64)> {
         let rest = Rest::of(&self.data, fit);
-        let curves = self.with_curves(law, &rest);
-        let best = curves.into_iter().min_by(|a, b| a.price.total_cmp(&b.price))?;
+        let curves = self.with_curves(law, &rest).into_iter().filter(may);
+        let best = curves.min_by(|a, b| a.price.total_cmp(&b.price))?;
         let gain = self.price(fit, &rest) - best.price;
         let is_of_size = self.part_of_force(fit.energy - best.left) > LEAST_PART_OF_FORCE.value();
         (gain > LEAST_GAIN.value() && is_of_size).then_some((best, gain))
@@ -90,13 +108,14 @@ impl Search<'_> {
     /// `law` with each curve beside it: over the place with its values refitted to first order, over the speed in full.
     fn with_curves(&self, law: &Fit, rest: &Rest) -> Vec<Beside> {
         let scale = 0.5 / (rest.power * rest.correlated_rows);
-        let priced = |curve: Curve, left: f64, added: usize| {
+        let priced = |curve: Curve, left: f64, added: usize, holds: bool| {
             let price = scale * left + self.price_of_value(rest) * (free(law) + added) as f64;
-            price.is_finite().then_some(Beside { curve, left, price })
+            price.is_finite().then_some(Beside { curve, left, price, holds })
         };
         let by_speed = [Curve::Speed, Curve::SpeedTimesDepth].into_iter().filter_map(|curve| {
+            let with = with_damping(&self.data, law, curve)?;
             // One of its knots is at rest, and adds nothing.
-            priced(curve, with_damping(&self.data, law, curve)?.energy, DAMPING_KNOTS - 1)
+            priced(curve, with.energy, DAMPING_KNOTS - 1, self.is_told_as_a_law(&with))
         });
         let residual = self.data.weighted_residual(&law.model, &law.values);
         let beside = directions(&self.data, law, &residual);
@@ -106,7 +125,8 @@ impl Search<'_> {
             let all: Vec<(usize, Vec<f64>)> = beside.iter().cloned().chain(own).enumerate().collect();
             let found = solve(&all, &residual)?;
             let taken: f64 = all.iter().zip(&found).map(|((_, column), size)| size * dot(column, &residual)).sum();
-            priced(curve, energy(&residual) - taken, added)
+            // To first order no law is fitted with it that could be told.
+            priced(curve, energy(&residual) - taken, added, false)
         });
         by_speed.chain(by_place).collect()
     }
@@ -160,6 +180,18 @@ mod tests {
         let (names, verdict, rivalled) = told(&found(|x, v| if x > 0.0 { 8.0 * v.max(0.0) } else { 0.0 }));
         assert_eq!((names, verdict), (vec![], Verdict::Unknown), "{rivalled:?}");
         assert!(!rivalled.is_empty() && rivalled.iter().all(|(_, curve)| *curve == Curve::Speed), "{rivalled:?}");
+    }
+
+    /// A damper that thins with the speed, in proportion to the depth: a loop follows it nearly, and leaves several times the noise, so that it is not told as a law; a
+    /// curve over the speed is one, and what was named beside the loop, as Hunt-Crossley damping, is not needed beside that.
+    #[test]
+    fn a_damper_that_thins_with_the_speed_is_no_loop() {
+        for (force, speed) in [(0.2, 0.02), (0.4, 0.005), (0.8, 0.03)] {
+            let thins = |x: f64, v: f64| force * (x / 4e-3).max(0.0) * v / (speed + v.abs());
+            let (names, verdict, rivalled) = told(&found(thins));
+            assert_eq!((names, verdict), (vec![], Verdict::Unknown), "{force} N at {speed} m/s: {rivalled:?}");
+            assert_eq!(rivalled, [("hysteresis", Curve::SpeedTimesDepth)], "{force} N at {speed} m/s");
+        }
     }
 
     /// A click of one deviation of the sensor in a tenth of the way: the rows leave what the sensors are known to leave, and the curve is there.
