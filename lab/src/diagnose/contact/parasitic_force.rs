@@ -219,22 +219,6 @@ mod tests {
         assert!(force.along == Along::Place && (along - 0.6).abs() < 0.05, "{along} N");
     }
 
-    /// A mass beyond the sensor that is read two milliseconds before the position, as where the effort has changed meanwhile: what it pulls with goes with the jerk, too, and no
-    /// force of free motion is told.
-    #[test]
-    fn a_mass_that_is_read_early_is_no_force_of_free_motion() {
-        let ahead = |seed: u64| {
-            let mut trial = TestContact::PLAIN.trial(seed);
-            let pull: Vec<f64> = trial.acceleration.iter().skip(2).map(|acceleration| 0.3 * acceleration).collect();
-            trial.force.iter_mut().zip(pull).for_each(|(force, pull)| *force += pull);
-            trial
-        };
-        let trials = || [1, 2].map(ahead).to_vec();
-        let outcome =
-            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
-        assert_eq!((names(&outcome), outcome.parasitic), (vec!["tool_inertia"], None));
-    }
-
     /// The force of both forms, and that of the element that the rig file holds of it.
     #[test]
     fn the_element_of_a_rig_file_is_the_same_force() {
