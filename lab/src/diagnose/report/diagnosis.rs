@@ -24,7 +24,7 @@ pub struct Diagnosis {
     pub alternatives: Vec<Alternative>,
     /// Where simulation and recording differ.
     pub locations: Vec<Location>,
-    /// How well the models fit, on data that no fit saw, in the channel that the mismatch is largest in.
+    /// How well the models fit, on data that no fit saw, in the channel that shows the named physics; of two or of none, in that with the larger mismatch.
     pub fit: FitQuality,
     /// The same of each channel.
     pub channels: Vec<FitQuality>,
@@ -168,7 +168,7 @@ pub struct Correlations {
 }
 
 /// What the page draws beside the answer.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 pub struct PlotData {
     /// Name of the rig.
     pub rig: String,

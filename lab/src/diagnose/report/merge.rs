@@ -7,11 +7,11 @@ use crate::rig::Coordinate;
 /// A diagnosis with what the page draws.
 pub type Report = (Diagnosis, PlotData);
 
-/// Both channels in one diagnosis; physics in order of evidence, the channel with the larger mismatch first.
+/// Both channels in one diagnosis; physics in order of evidence, the channel that shows the named physics first, of two or of none that with the larger mismatch.
 #[must_use]
 pub fn merged(contact: Report, drive: Report, coordinate: Coordinate) -> Report {
     let (mut first, mut second) = (contact, drive);
-    if excess(&second.0) > excess(&first.0) {
+    if leads(&second.0, &first.0) {
         std::mem::swap(&mut first, &mut second);
     }
     let ((mut diagnosis, mut plots), (other, other_plots)) = (first, second);
@@ -40,6 +40,16 @@ pub fn merged(contact: Report, drive: Report, coordinate: Coordinate) -> Report 
     (diagnosis, plots)
 }
 
+/// Whether the answer is told by the channel of `one` rather than by that of `other`: what is said of named physics has to be said of the channel that shows them.
+fn leads(one: &Diagnosis, other: &Diagnosis) -> bool {
+    let names = |diagnosis: &Diagnosis| diagnosis.physics.iter().any(|physics| physics.name != "unknown");
+    match (names(one), names(other)) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => excess(one) > excess(other),
+    }
+}
+
 /// What the channel's refitted law leaves, over its expected noise; of a channel that has nothing to tell, nothing.
 fn excess(diagnosis: &Diagnosis) -> f64 {
     let tells = f64::from(!diagnosis.physics.is_empty());
@@ -60,7 +70,9 @@ fn verdict(one: Verdict, other: Verdict) -> Verdict {
 
 #[cfg(test)]
 mod tests {
+    use super::super::diagnosis::{Evidence, FitQuality, Physics};
     use super::*;
+    use crate::page::quantity;
 
     #[test]
     fn every_pair_of_verdicts_is_told_alike_whichever_comes_first() {
@@ -78,5 +90,64 @@ mod tests {
                 assert_eq!(verdict(*one, *other), wanted[row][column], "{one:?} {other:?}");
             }
         }
+    }
+    /// Of one channel that leaves `refitted` over its noise of 10 mN, and half of that with the names of `physics`.
+    fn report(channel: &'static str, verdict: Verdict, physics: &str, refitted: f64) -> Report {
+        let improved = if physics == "unknown" { refitted } else { 0.5 * refitted };
+        let fit = FitQuality {
+            channel,
+            unit: "N",
+            noise_floor: 0.01,
+            as_given: refitted,
+            refitted,
+            improved,
+            held_out: true,
+            explained_share: 0.5,
+            band_hz: 100.0,
+            learned: None,
+        };
+        let physics = Physics {
+            name: physics.to_owned(),
+            acts_in: channel,
+            channel,
+            statement: String::new(),
+            equation: String::new(),
+            evidence: Evidence { held_out_gain: 0.5, p_value: 0.0 },
+            parameters: Vec::new(),
+            on_drive: None,
+        };
+        let diagnosis = Diagnosis {
+            schema: "",
+            verdict,
+            summary: String::new(),
+            physics: vec![physics],
+            alternatives: Vec::new(),
+            locations: Vec::new(),
+            channels: vec![fit.clone()],
+            fit,
+            nominal: Vec::new(),
+            correlations: Vec::new(),
+            checked: Vec::new(),
+            findings: Vec::new(),
+        };
+        (diagnosis, PlotData::default())
+    }
+
+    /// Friction of the drive beside a contact of which nothing is known, with the larger mismatch: what is said of the friction is said of the effort.
+    #[test]
+    fn what_is_said_of_a_name_is_said_of_the_channel_that_shows_it() {
+        let contact = || report("force", Verdict::Unknown, "unknown", 0.3);
+        let drive = || report("effort", Verdict::Explained, "stribeck_friction", 0.02);
+        let (told, _) = merged(contact(), drive(), Coordinate::Linear);
+        assert_eq!((told.fit.channel, told.channels.len()), ("effort", 2));
+        let shown = |value: f64| quantity::rounded(value, "N", 3);
+        let falls = format!("the residual effort falls from {} to {}", shown(0.02), shown(0.01));
+        assert!(told.summary.contains(&falls), "{}", told.summary);
+        let left = format!("In the force something is missing that no effect of the list explains: {}", shown(0.3));
+        assert!(told.summary.contains(&left), "{}", told.summary);
+        // Where both name something, the larger mismatch comes first.
+        let named = report("force", Verdict::Explained, "adhesion", 0.3);
+        let (both, _) = merged(named, drive(), Coordinate::Linear);
+        assert_eq!(both.fit.channel, "force");
     }
 }

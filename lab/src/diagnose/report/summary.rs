@@ -37,6 +37,41 @@ pub(super) fn holds_parasitic_force(answer: &Diagnosis) -> bool {
     answer.findings.iter().any(|finding| finding.code == PARASITIC_FORCE)
 }
 
+/// The channel that holds what is not named.
+pub(super) fn unexplained(answer: &Diagnosis) -> &FitQuality {
+    let unknown = answer.physics.iter().find(|physics| physics.name == "unknown");
+    let channel = unknown.and_then(|unknown| answer.channels.iter().find(|fit| fit.channel == unknown.channel));
+    channel.unwrap_or(&answer.fit)
+}
+
+/// What a channel lacks, in words.
+fn lacks_in(channel: &str, coordinate: Coordinate) -> &'static str {
+    match (channel, coordinate) {
+        ("effort", _) => "effort",
+        (_, Coordinate::Rotary) => "torque",
+        _ => "force",
+    }
+}
+
+/// What a partly explained `answer` leaves beside its names.
+fn beside_names(answer: &Diagnosis, coordinate: Coordinate) -> String {
+    let left = unexplained(answer);
+    let shown = |value: f64| quantity::rounded(value, left.unit, 3);
+    let sensors = format!("the sensors alone would leave {}", shown(left.noise_floor));
+    if holds_effort(answer) {
+        format!(" The force reading holds effort of the drive besides, which is no effect of the list: {sensors}.")
+    } else if holds_parasitic_force(answer) {
+        format!(" That is with a force that acts in free motion, too, which is no effect of the list: {sensors}.")
+    } else if left.channel == answer.fit.channel {
+        format!(" Something is left beside that: {sensors}.")
+    } else {
+        let (lacks, improved) = (lacks_in(left.channel, coordinate), shown(left.improved));
+        format!(
+            " In the {lacks} something is missing that no effect of the list explains: {improved} are left, where {sensors}."
+        )
+    }
+}
+
 /// Whether refitted values leave more than those of the rig file on rows that no fit saw, in the three digits that a reader sees.
 pub(super) fn refit_is_worse(fit: &FitQuality) -> bool {
     let shown = |value: f64| quantity::rounded(value, fit.unit, 3);
@@ -50,11 +85,7 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
     let unit = fit.unit;
     let before = quantity::rounded(fit.refitted, unit, 3);
     let expected_noise = quantity::rounded(fit.noise_floor, unit, 3);
-    let lacks = match (fit.channel, coordinate) {
-        ("effort", _) => "effort",
-        (_, Coordinate::Rotary) => "torque",
-        _ => "force",
-    };
+    let lacks = lacks_in(fit.channel, coordinate);
     match answer.verdict {
         Verdict::NoMismatch => {
             format!(
@@ -94,16 +125,8 @@ pub fn summary(answer: &Diagnosis, coordinate: Coordinate) -> String {
         Verdict::Explained | Verdict::PartlyExplained => {
             let names: Vec<String> =
                 answer.physics.iter().filter(|p| p.name != "unknown").map(|p| effect_name(&p.name)).collect();
-            let rest = if answer.verdict == Verdict::PartlyExplained && holds_effort(answer) {
-                format!(
-                    " The force reading holds effort of the drive besides, which is no effect of the list: the sensors alone would leave {expected_noise}."
-                )
-            } else if answer.verdict == Verdict::PartlyExplained && holds_parasitic_force(answer) {
-                format!(
-                    " That is with a force that acts in free motion, too, which is no effect of the list: the sensors alone would leave {expected_noise}."
-                )
-            } else if answer.verdict == Verdict::PartlyExplained {
-                format!(" Something is left beside that: the sensors alone would leave {expected_noise}.")
+            let rest = if answer.verdict == Verdict::PartlyExplained {
+                beside_names(answer, coordinate)
             } else if is_noise(fit) {
                 let about = if fit.improved > ABOUT_NOISE * fit.noise_floor { "about " } else { "" };
                 format!(" That is {about}what the sensors leave ({expected_noise}).")

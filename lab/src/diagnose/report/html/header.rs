@@ -1,7 +1,7 @@
 //! The answer in one heading and one sentence, the picture that shows it, and what it names.
 
 use super::super::diagnosis::{Diagnosis, PlotData, Verdict};
-use super::super::summary::{holds_effort, holds_parasitic_force, is_noise};
+use super::super::summary::{holds_effort, holds_parasitic_force, is_noise, unexplained};
 use super::wording::{channel, largest_part, list, location, multiple, share, title, worst};
 use super::{effect, finding, state_plot};
 use crate::page::quantity::rounded;
@@ -59,7 +59,10 @@ fn meaning(answer: &Diagnosis) -> Markup {
         },
         Verdict::PartlyExplained => html! {
             "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
-            " above the noise. The rest is more than noise, and "
+            " above the noise. "
+            @if unexplained(answer).channel != fit.channel {
+                "What is left in the " (channel(unexplained(answer).channel)) " is more than noise, and "
+            } @else { "The rest is more than noise, and " }
             @if holds_effort(answer) { "some of it " a href="#physics" { "couples into the force reading" } "." } @else { "no effect of the list explains it." }
         },
         Verdict::Unknown => unknown(answer),
