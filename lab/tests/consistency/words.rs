@@ -34,13 +34,22 @@ fn verdict(json: &Value, html: &str) -> Vec<String> {
     if heading.starts_with(wanted) { Vec::new() } else { vec![format!("page: {heading:?} is not {wanted:?}")] }
 }
 
-/// Every figure of the summary is one of the fit's.
+/// Every figure of the summary is one of the fit's; of what is missing in the other channel, one of that channel's.
 fn summary(json: &Value) -> Vec<String> {
-    let fit = &json["fit"];
-    let stated = ["as_given", "refitted", "improved", "noise_floor"].map(|key| float(&fit[key]));
-    let shown = numbers(text(json, "summary"), text(fit, "unit"));
-    let strange = shown.iter().filter(|shown| !stated.iter().any(|stated| shown.holds(*stated)));
-    strange.map(|shown| format!("summary: {shown:?} is none of {fit}")).collect()
+    let (fit, channels) = (&json["fit"], all(json, "channels"));
+    let said = text(json, "summary");
+    let (own, other) = said.split_once(" something is missing that").unwrap_or((said, ""));
+    let strange = |said: &str, fit: &Value| -> Vec<String> {
+        let stated = ["as_given", "refitted", "improved", "noise_floor"].map(|key| float(&fit[key]));
+        let shown = numbers(said, text(fit, "unit"));
+        let strange = shown.iter().filter(|shown| !stated.iter().any(|stated| shown.holds(*stated)));
+        strange.map(|shown| format!("summary: {shown:?} is none of {fit}")).collect()
+    };
+    let mut wrong = strange(own, fit);
+    if !other.is_empty() {
+        wrong.extend(strange(other, channels.get(1).unwrap_or(fit)));
+    }
+    wrong
 }
 
 /// "= 83 × noise" at each bar, and the multiples in the sentence below the heading.
