@@ -22,5 +22,6 @@ pub mod session;
 pub mod simulated_bed;
 pub mod test_bed;
 pub mod trial_of_method;
+pub mod watched_bed;
 
 pub use command::{InvestigateArgs, run};

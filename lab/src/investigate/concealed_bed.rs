@@ -5,7 +5,7 @@ use palpate_cases::{ConcealedRig, Excursion};
 use super::monitor::Violation;
 use super::simulated_bed::{Supervisor, truncate};
 use super::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
-use super::trial_of_method::watched_bed::{Watched, WatchedBed};
+use super::watched_bed::{Watched, WatchedBed};
 use crate::experiment_design::Limits;
 use crate::recording::Recording;
 use crate::simulate::{CommandSource as _, Measurement};

@@ -3,7 +3,7 @@
 //!
 //! `listed_rig` is what a run puts to the test: rigs that `own_rig` draws from the cases' own generator, and those of other authors,
 //! of which a [`source_rig`] is what an investigation may know and a [`source_bed`] runs the rest. [`comparison`] puts one to all three
-//! ways on a [`watched_bed`]; a [`row`] holds its [`answer`]s against the truth, and [`table`] counts rows.
+//! ways on a [`watched_bed`](super::watched_bed); a [`row`] holds its [`answer`]s against the truth, and [`table`] counts rows.
 
 pub mod answer;
 mod command;
@@ -14,6 +14,5 @@ pub mod row;
 pub mod source_bed;
 pub mod source_rig;
 pub mod table;
-pub mod watched_bed;
 
 pub use command::{InvestigateChallengeArgs, run};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
 use palpate_lab::investigate::trial_of_method::row::Row;
-use palpate_lab::investigate::trial_of_method::watched_bed::Watched;
+use palpate_lab::investigate::watched_bed::Watched;
 use tempfile::TempDir;
 
 use super::design::bench;

@@ -61,7 +61,7 @@ impl Search<'_> {
     }
 
     /// The curve that does better than one of the `named` terms of `fit`, with the place of that among the terms: the first that refutes one, or else the first. Where
-    /// what was told is no law that `holds`, only a curve counts with which it is one.
+    /// not even the law that is told `holds`, only curves count with which the law in the name's place does.
     pub(super) fn rival(&self, fit: &Fit, named: &[NamedTerm], holds: bool) -> Option<(usize, Rival)> {
         let each = named.iter().filter_map(|named| {
             let without = self.without(fit, named.at);

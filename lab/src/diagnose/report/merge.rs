@@ -70,7 +70,7 @@ fn verdict(one: Verdict, other: Verdict) -> Verdict {
 
 #[cfg(test)]
 mod tests {
-    use super::super::diagnosis::{Evidence, FitQuality, Physics};
+    use super::super::diagnosis::{Evidence, Finding, FitQuality, Physics};
     use super::*;
     use crate::page::quantity;
 
@@ -144,6 +144,12 @@ mod tests {
         let falls = format!("the residual effort falls from {} to {}", shown(0.02), shown(0.01));
         assert!(told.summary.contains(&falls), "{}", told.summary);
         let left = format!("In the force something is missing that no effect of the list explains: {}", shown(0.3));
+        assert!(told.summary.contains(&left), "{}", told.summary);
+        // A force of free motion is the contact's, and not what is left of the effort.
+        let mut parasitic = contact();
+        let code = summary::PARASITIC_FORCE;
+        parasitic.0.findings.push(Finding { code, grave: false, place: String::new(), text: String::new() });
+        let (told, _) = merged(parasitic, drive(), Coordinate::Linear);
         assert!(told.summary.contains(&left), "{}", told.summary);
         // Where both name something, the larger mismatch comes first.
         let named = report("force", Verdict::Explained, "adhesion", 0.3);

@@ -60,7 +60,7 @@ fn beside_names(answer: &Diagnosis, coordinate: Coordinate) -> String {
     let sensors = format!("the sensors alone would leave {}", shown(left.noise_floor));
     if holds_effort(answer) {
         format!(" The force reading holds effort of the drive besides, which is no effect of the list: {sensors}.")
-    } else if holds_parasitic_force(answer) {
+    } else if holds_parasitic_force(answer) && left.channel == answer.fit.channel {
         format!(" That is with a force that acts in free motion, too, which is no effect of the list: {sensors}.")
     } else if left.channel == answer.fit.channel {
         format!(" Something is left beside that: {sensors}.")

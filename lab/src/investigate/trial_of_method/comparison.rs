@@ -8,13 +8,13 @@ use anyhow::{Context as _, Result};
 use serde::{Deserialize, Serialize};
 
 use super::answer::Answer;
-use super::watched_bed::{Watched, WatchedBed};
 use crate::diagnose::diagnose;
 use crate::experiment_design::Limits;
 use crate::investigate::concealed_bed::stopped_by;
 use crate::investigate::record::{Investigation, Setup, State, write};
 use crate::investigate::session::{Session, reference_csv};
 use crate::investigate::test_bed::TrialRequest;
+use crate::investigate::watched_bed::{Watched, WatchedBed};
 use crate::recording::Recording;
 use crate::rig::Rig;
 

@@ -86,7 +86,7 @@ impl Row {
 pub(crate) mod tests {
     use super::*;
     use crate::investigate::trial_of_method::answer::tests::{answer, names};
-    use crate::investigate::trial_of_method::watched_bed::Watched;
+    use crate::investigate::watched_bed::Watched;
 
     /// A drawn rig that conceals `truth` with a strength of 2.
     pub fn row(truth: &[&str], first: Answer, rounds: Vec<Answer>, fixed: Answer) -> Row {

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 
-use super::watched_bed::{Watched, WatchedBed};
 use crate::error::InputError;
 use crate::experiment_design::Limits;
 use crate::investigate::command_bed::CommandBed;
 use crate::investigate::monitor::hold_against;
 use crate::investigate::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
+use crate::investigate::watched_bed::{Watched, WatchedBed};
 use crate::recording::Recording;
 use crate::rig::{Columns, Coordinate, Rig};
 

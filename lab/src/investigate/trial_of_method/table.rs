@@ -2,9 +2,9 @@
 
 use super::answer::Answer;
 use super::row::{OWN, Row};
-use super::watched_bed::Watched;
 use crate::challenge::binomial::clopper_pearson;
 use crate::experiment_design::explanation::UNKNOWN;
+use crate::investigate::watched_bed::Watched;
 
 /// A way to an answer, and its name.
 type Way = (&'static str, fn(&Row) -> &Answer);

@@ -53,10 +53,12 @@ fn meaning(answer: &Diagnosis) -> Markup {
             "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
             " above the noise. What stays, " (rounded(fit.improved, fit.unit, 3)) ", is " (multiple(fit.improved / fit.noise_floor)) ": the real laws are not quite those that are named."
         },
-        Verdict::PartlyExplained if holds_parasitic_force(answer) => html! {
-            "A " a href="#physics" { "force that acts in free motion, too" } ", is no effect of the list. Of the mean square that refitted values leave in the "
-            (channel(fit.channel)) " above the noise, the physics below takes away " (share(fit.explained_share)) " with it."
-        },
+        Verdict::PartlyExplained if holds_parasitic_force(answer) && unexplained(answer).channel == fit.channel => {
+            html! {
+                "A " a href="#physics" { "force that acts in free motion, too" } ", is no effect of the list. Of the mean square that refitted values leave in the "
+                (channel(fit.channel)) " above the noise, the physics below takes away " (share(fit.explained_share)) " with it."
+            }
+        }
         Verdict::PartlyExplained => html! {
             "The physics below takes away " (share(fit.explained_share)) " of the mean square that refitted values leave in the " (channel(fit.channel))
             " above the noise. "

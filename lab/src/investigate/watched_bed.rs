@@ -1,8 +1,8 @@
-//! A bed on which the three ways are compared.
+//! A test bed that tells what its trials used of the limits.
 
 use serde::{Deserialize, Serialize};
 
-use crate::investigate::test_bed::TestBed;
+use super::test_bed::TestBed;
 
 /// What is held against the limits.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
