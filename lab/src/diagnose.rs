@@ -47,7 +47,7 @@ use drive::outcome::Outcome;
 pub use report::diagnosis::Diagnosis;
 use report::diagnosis::PlotData;
 use report::merge::{self, Report};
-use report::{contact_report, drive_report};
+use report::{contact_report, contact_rig, drive_report};
 
 /// Every threshold of the diagnosis that is a number on a scale.
 pub fn thresholds() -> impl Iterator<Item = Threshold> {
@@ -102,7 +102,7 @@ pub fn diagnose(
         bail!(InputError::new(origin, "recordings in which nothing moves, or of too few rows", NEEDED));
     };
     answer.findings.splice(0..0, findings.into_iter().chain(divided.finding).chain(felt).chain(at_the_tool));
-    let alternatives = contact.as_ref().map(|contact| contact_report::alternative_rigs(&improved, contact));
+    let alternatives = contact.as_ref().map(|contact| contact_rig::alternative_rigs(&improved, contact));
     Ok(Found { answer, pictures, improved, alternatives: alternatives.unwrap_or_default() })
 }
 
@@ -112,7 +112,7 @@ const NEEDED: &str = "a force in contact, or some hundred rows of an effort that
 /// One report and one rig from those of the contact and of the drive.
 fn together(rig: &Rig, contact: Option<&contact::outcome::Outcome>, drive: Option<&Outcome>) -> Option<(Report, Rig)> {
     let of_contact =
-        contact.map(|outcome| (contact_report::contact_report(outcome, rig), contact_report::refined(rig, outcome)));
+        contact.map(|outcome| (contact_report::contact_report(outcome, rig), contact_rig::refined(rig, outcome)));
     let touched = contact.map(drive_report::Touched::of);
     let of_drive = drive.map(|outcome| (drive_report::drive_report(outcome, rig, touched.as_ref()), outcome));
     match (of_contact, of_drive) {

@@ -1,9 +1,13 @@
 //! The diagnosis as data, as a page, and as an improved rig file.
 
 mod channel;
+mod contact_findings;
 mod contact_plot;
 pub mod contact_report;
 mod contact_residual;
+pub mod contact_rig;
+mod contact_values;
+mod contact_wording;
 mod correlation;
 pub mod diagnosis;
 mod drive_plot;
