@@ -93,6 +93,8 @@ pub enum Limit {
     VisitedDepth,
     /// An instant of the trial at which the law jumps: between two rows nothing tells one from another.
     InstantOfJump,
+    /// A height above the surface at which the law jumps once the tool is that far away from it: between two rows nothing tells one from another.
+    HeightOfJump,
 }
 
 impl Parameter {

@@ -86,10 +86,10 @@ impl Data<'_> {
         Fit { model: model.clone(), values, energy: cost }
     }
 
-    /// `start` fitted, an instant at which the law jumps wherever it leaves least.
+    /// `start` fitted, an instant or a height at which the law jumps wherever it leaves least.
     #[must_use]
     pub fn fit(&self, model: &ContactModel, start: &[f64], effort: Effort) -> Fit {
-        self.with_instants(self.fit_holding(model, start, effort, &|_| false), effort)
+        self.with_jumps(self.fit_holding(model, start, effort, &|_| false), effort)
     }
 
     /// `fit` under these weights, its search continued from where it ended.

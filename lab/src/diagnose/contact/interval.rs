@@ -10,17 +10,18 @@ use crate::diagnose::interval::{Clusters, Intervals, Spread, spread};
 use crate::diagnose::jackknife::stretch_of_rows;
 use crate::diagnose::linalg::energy;
 
-/// Squared deviations that a jump changes from its instant to an end of its 95 % interval (J. Bai, *Rev. Econ. Stat.* 79, 1997, whose limit
+/// Squared deviations that a jump changes from its place to an end of its 95 % interval (J. Bai, *Rev. Econ. Stat.* 79, 1997, whose limit
 /// is the place of the greatest value of a Brownian motion with drift).
 const JUMP_95: f64 = 11.0;
 
-/// Halvings in which an end is sought between the instant and the end of its range: a thousandth of a row of a million.
+/// Halvings in which an end is sought between the jump and the end of its range: a thousandth of a row of a million.
 const HALVINGS: usize = 30;
 
 /// The interval of each value of `fit`.
 #[must_use]
 pub fn intervals(data: &Data<'_>, fit: &Fit, rest: &Rest) -> Intervals {
-    let (ranges, jumps) = (fit.model.ranges(&fit.values), jumps(fit));
+    let ranges = fit.model.ranges(&fit.values);
+    let jumps: Vec<usize> = jumps(fit).into_iter().map(|(at, _)| at).collect();
     let free: Vec<usize> = (0..fit.values.len()).filter(|at| ranges[*at].free && !jumps.contains(at)).collect();
     let mut all = intervals_of(data, fit, rest, &free);
     for at in jumps {
@@ -90,10 +91,10 @@ fn rounding(data: &Data<'_>, fit: &Fit) -> Vec<f64> {
     slopes.zip(variances).map(|(slope, variance)| slope * variance.sqrt()).collect()
 }
 
-/// The end of the interval of the instant `at` on the side of `bound`, no farther than that: where the rows that lie between have changed
+/// The end of the interval of the jump `at`, an instant or a height, on the side of `bound`, no farther than that: where the rows that lie between have changed
 /// by [`JUMP_95`] squared deviations.
 ///
-/// A jump has no tangent in its instant, and its instant converges with the number of rows, faster than all other values and apart from
+/// A jump has no tangent in its place, and its place converges with the number of rows, faster than all other values and apart from
 /// them: they are held. Rows that remember count as so many fewer. Where nothing is touched, nothing tells: a jump between two contacts
 /// lies anywhere between them.
 fn end_of_jump(data: &Data<'_>, fit: &Fit, rest: &Rest, at: usize, bound: f64) -> f64 {
