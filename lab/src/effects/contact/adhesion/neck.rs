@@ -20,7 +20,9 @@ pub(super) fn act(form: usize, values: &[f64], state: &mut EffectState, touch: &
     }
     match form {
         form::ATTRACTION => touch.force -= values[0],
-        form::CAPILLARY | form::BOND | form::BILINEAR => touch.force -= values[0] * part(form, values, touch),
+        form::CAPILLARY | form::BOND | form::BILINEAR | form::SOFTENING => {
+            touch.force -= values[0] * part(form, values, touch)
+        }
         form::BRIDGE | form::EXPONENTIAL if touch.position <= 0.0 => {
             touch.force = -values[0] * part(form, values, touch)
         }
@@ -38,12 +40,13 @@ fn part(form: usize, values: &[f64], touch: &ContactState) -> f64 {
             let over = height / values[2].max(f64::MIN_POSITIVE);
             over * (1.0 - over).exp()
         }
-        form::BILINEAR => {
+        form::BILINEAR | form::SOFTENING => {
             // A neck that is softer than the spring is the spring's own pull, as of the other forms.
             let softest = values[0] / touch.stiffness.max(f64::MIN_POSITIVE);
             let peak = values[2].min(values[1]).min(softest);
             let rising = height / peak.max(f64::MIN_POSITIVE);
             let falling = (values[1] - height) / (values[1] - peak).max(f64::MIN_POSITIVE);
+            let falling = if form == form::SOFTENING { falling.max(0.0).powf(values[3]) } else { falling };
             rising.min(falling).clamp(0.0, 1.0)
         }
         _ => (1.0 - over).max(0.0),
@@ -120,6 +123,20 @@ mod tests {
         for (place, velocity, expected) in path {
             let force = law.step(0.0, 1e-3, place, velocity, 0.0, 0.0);
             assert!((force - expected).abs() < 1e-12, "{place}: {force} for {expected}");
+        }
+    }
+
+    /// The neck above, whose pull of 0.3 N falls by the root of the way to its end: 0.3 sqrt(1 / 3) where a third of that way is left, and 0.3 sqrt(1 / 4) at a quarter.
+    #[test]
+    fn a_pull_that_falls_late_falls_by_a_power_of_the_way_to_its_end() {
+        let contact = Contact { surface: 0.0, stiffness: 100.0, damping: 0.0, bilateral: false };
+        let actives = [ActiveEffect { effect: &Adhesion, form: form::SOFTENING, values: &[0.3, 4e-3, 1e-3, 0.5] }];
+        let mut law = ContactSimulator::new(contact, &actives);
+        let path = [5e-3, -0.5e-3, -1e-3, -3e-3, -3.25e-3, -4.1e-3, -1e-3];
+        let forces = path.map(|place| law.step(0.0, 1e-3, place, -1e-3, 0.0, 0.0));
+        let expected = [0.5, -0.15, -0.3, -0.3 / 3f64.sqrt(), -0.15, 0.0, 0.0];
+        for (force, expected) in forces.iter().zip(expected) {
+            assert!((force - expected).abs() < 1e-12, "{forces:?}");
         }
     }
 

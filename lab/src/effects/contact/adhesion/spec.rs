@@ -94,10 +94,26 @@ pub static SPEC: EffectSpec = EffectSpec {
             equation: "once touched, F above the surface is -pull_off_force x exp(1 - x), x = height / peak_height, until it lets go at release_height",
             parameters: &[PULL, RELEASE_HEIGHT.within(Limit::HeightOfJump), PEAK_HEIGHT],
         },
+        Form {
+            name: "softening",
+            equation: "as bilinear, from peak_height on -pull_off_force ((release_height - height) / (release_height - peak_height))^softening_exponent",
+            parameters: &[
+                PULL,
+                RELEASE_HEIGHT,
+                PEAK_HEIGHT,
+                Parameter::new(
+                    "softening_exponent",
+                    Word::new("1", "1"),
+                    "one where the pull falls in a straight line, less where it falls late",
+                    0.1,
+                    10.0,
+                ),
+            ],
+        },
     ],
     excited_by: "leaving the surface, slowly and often",
     resembles: &["force_bias", "lost_motion"],
-    source: "a liquid bridge; D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; one that rises first: P. H. Geubelle, J. S. Baylor, Compos. B 29 (1998) 589; one that falls off exponentially: J. H. Rose, J. R. Smith, J. Ferrante, Phys. Rev. B 28 (1983) 1835, X.-P. Xu, A. Needleman, J. Mech. Phys. Solids 42 (1994) 1397; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
+    source: "a liquid bridge; D. S. Dugdale, J. Mech. Phys. Solids 8 (1960) 100; a pull that softens: A. Hillerborg et al., Cem. Concr. Res. 6 (1976) 773; one that rises first: P. H. Geubelle, J. S. Baylor, Compos. B 29 (1998) 589; one that falls by a power: K. Park, G. H. Paulino, J. R. Roesler, J. Mech. Phys. Solids 57 (2009) 891; one that falls off exponentially: J. H. Rose, J. R. Smith, J. Ferrante, Phys. Rev. B 28 (1983) 1835, X.-P. Xu, A. Needleman, J. Mech. Phys. Solids 42 (1994) 1397; K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301; B. V. Derjaguin et al., J. Colloid Interface Sci. 53 (1975) 314",
 };
 
 /// Indices of the forms.
@@ -110,4 +126,5 @@ pub mod form {
     pub const BOND: usize = 6;
     pub const BILINEAR: usize = 7;
     pub const EXPONENTIAL: usize = 8;
+    pub const SOFTENING: usize = 9;
 }

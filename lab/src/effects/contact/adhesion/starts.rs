@@ -6,6 +6,9 @@ use crate::effects::{ExcitationStats, Start};
 /// Height of the greatest pull of a neck of its own stiffness, over that of its end, where nothing is known of it.
 const USUAL_PEAK: f64 = 0.2;
 
+/// How a pull falls to its end: late, or at once and then slowly.
+const SOFTENING_EXPONENTS: [f64; 2] = [0.6, 1.8];
+
 /// Heights at which a surface may let go of a pull that falls off exponentially, over that of its peak: a fifth of the pull is left there, and a hundredth.
 const EXPONENTIAL_ENDS: [f64; 2] = [4.0, 8.0];
 
@@ -49,6 +52,16 @@ pub fn starts(form: usize, scene: &ExcitationStats) -> Vec<Start> {
         let small = heights.map(|height| Start::sized(&[force, height, 1.5 * height], &[0]));
         let measured = measured.map(|height| Start::at(&[scene.pull, height, 1.5 * height]));
         return small.chain(measured).chain(seen.map(|end| Start::at(&[scene.pull, end, end - stretched]))).collect();
+    }
+    if form == form::SOFTENING {
+        let straight = starts(form::BILINEAR, scene).into_iter();
+        let bent = straight.flat_map(|Start { values, linear_parameters }| {
+            SOFTENING_EXPONENTS.map(|exponent| Start {
+                values: [&values[..], &[exponent]].concat(),
+                linear_parameters: linear_parameters.clone(),
+            })
+        });
+        return bent.collect();
     }
     if form == form::BILINEAR && scene.pull > 0.0 {
         let own = measured.chain(seen).map(|height| Start::at(&[scene.pull, height, USUAL_PEAK * height]));
@@ -96,6 +109,7 @@ mod tests {
             form::BOND,
             form::BILINEAR,
             form::EXPONENTIAL,
+            form::SOFTENING,
         ] {
             let whole = |start: &Start| start.linear_parameters.is_empty() && start.values[0] == scene.pull;
             let found: Vec<Start> = starts(form, &scene).into_iter().filter(whole).collect();
