@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::criteria::{LEAST_GAIN, MUCH_MISSING};
+use super::criteria::MUCH_MISSING;
 use super::fit::{Effort, Fit};
 use super::model::{ContactModel, index};
 use super::own_values::{moved_values, own_values};
@@ -86,36 +86,18 @@ impl Search<'_> {
     /// as well the one with the fewest is polished, and leaves room for other effects. Where the best is worth it beside `less`, those that are no
     /// answer beside it are none.
     pub(super) fn polished(&self, quick: Vec<Fit>, less: &Fit) -> Vec<Fit> {
-        let coarse = self.coarsely_polished(quick);
-        let mut fits = distinct(coarse.clone());
+        let mut fits = distinct(self.coarsely_polished(quick));
         fits.truncate(POLISHED);
         if fits.is_empty() {
             return fits;
         }
         let first = fits.remove(0);
-        let mut full = vec![self.on_every_row(&first, &coarse)];
+        let mut full = self.to_the_end(vec![first.clone()]);
         if self.is_admissible(&full[0]) && self.is_worth(&full[0], less) {
             fits.retain(|fit| !self.is_no_answer(&self.coarse, fit, &first));
         }
-        full.par_extend(fits.par_iter().map(|fit| self.on_every_row(fit, &coarse)));
+        full.extend(self.to_the_end(fits));
         full
-    }
-
-    /// `fit` on every row, or another of the `coarse` fits with its names where that does better there: of forms that means of rows do not tell apart, with no more
-    /// values, every row decides.
-    fn on_every_row(&self, fit: &Fit, coarse: &[Fit]) -> Fit {
-        let rest = Rest::of(&self.coarse, fit);
-        let (names, dearest) = (sorted_names(&fit.model), self.price(fit, &rest) + LEAST_GAIN.value());
-        let is_alike = |other: &&Fit| {
-            sorted_names(&other.model) == names
-                && other.model.own == fit.model.own
-                && other.model.free_count() <= fit.model.free_count()
-                && self.price(other, &rest) < dearest
-        };
-        let alike: Vec<&Fit> = coarse.iter().filter(is_alike).collect();
-        let full: Vec<Fit> = alike.par_iter().map(|fit| self.data.again(fit)).collect();
-        let best = full.into_iter().min_by(|a, b| a.energy.total_cmp(&b.energy));
-        best.unwrap_or_else(|| self.data.again(fit))
     }
 
     /// The best of `quick` fitted to the end on the means of rows, the best first at the price of their values.

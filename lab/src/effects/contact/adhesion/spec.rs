@@ -87,7 +87,7 @@ pub static SPEC: EffectSpec = EffectSpec {
         Form {
             name: "bilinear",
             equation: "once touched, F above the surface is -pull_off_force height / peak_height up to peak_height, which is no more than pull_off_force / K, and from there on falls in a straight line to nothing at release_height",
-            parameters: &[PULL, RELEASE_HEIGHT.within(Limit::HeightOfJump), PEAK_HEIGHT],
+            parameters: &[PULL, RELEASE_HEIGHT, PEAK_HEIGHT],
         },
         Form {
             name: "exponential",
