@@ -125,7 +125,6 @@ mod tests {
         let stays = data.fit_holding(&model, &far, Effort::FULL, &|_| false);
         assert!(height(&stays) > 3e-3, "{:?}", stays.values);
         let found = data.fit(&model, &far, Effort::FULL);
-        println!("{:?}", &found.values);
         assert!((height(&found) / 1.5e-3 - 1.0).abs() < 0.1, "{:?}", found.values);
     }
 }

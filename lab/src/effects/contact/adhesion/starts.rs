@@ -15,8 +15,8 @@ const EXPONENTIAL_ENDS: [f64; 2] = [4.0, 8.0];
 /// Height at which half of a pull that falls off exponentially is left, over that of its peak: the greater root of x exp(1 - x) = 1/2.
 const HALF_OF_EXPONENTIAL: f64 = 2.678;
 
-/// The height at which a pull ends by `form`, or where it falls off exponentially that of its peak, of which half was measured last at a height above the surface, where it is greatest at `stretched`; `None`
-/// where it was not measured above that.
+/// The height at which a pull ends by `form`, or that of its peak where it falls off exponentially. Half of the pull was measured last at a height above the surface; it is
+/// greatest at `stretched`. `None` where it was not measured above that.
 fn seen_end(form: usize, scene: &ExcitationStats, stretched: f64) -> Option<f64> {
     let half = scene.half_pull_height;
     let end = match form {
