@@ -222,24 +222,16 @@ mod tests {
     #[test]
     fn what_acts_in_a_hundredth_of_the_time_is_told_by_its_size_there() {
         const SIZES: [f64; 2] = [0.032, 2.5e-4];
-        let (pulls, values) = TestContact::PLAIN.law_with("adhesion", 3, &SIZES);
-        let pulled = |seed: u64| {
-            let mut trial = TestContact::PLAIN.trial(seed);
-            let trials = [trial.clone()];
-            let data = Data::new(&trials);
-            let nominal = nominal_fit(&data, &TestContact::nominal());
-            let without = data.residual(&nominal.model, &values[..nominal.values.len()], 0);
-            let pulls = data.residual(&pulls, &values, 0);
-            let rows = trial.force.iter_mut().zip(without.iter().zip(&pulls));
-            rows.for_each(|(force, (without, pulls))| *force += without - pulls);
-            trial
-        };
-        let trials = [1, 2, 3, 4].map(pulled);
+        let trials = [1, 2, 3, 4].map(|seed| TestContact::PLAIN.trial_under(seed, ("adhesion", 3, &SIZES)));
         let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
         let [data, coarse] = [(), ()].map(|()| Data::new(&trials).weighed(&nominal));
         // What belongs to a trial alone has a value in each.
         let start: Vec<f64> = nominal.values.iter().copied().chain(SIZES).collect();
-        let fit = data.fit(&nominal.model.with(pulls.terms[0]), &start, Effort::FULL);
+        let fit = data.fit(
+            &nominal.model.with(Term { effect: crate::effects::find("adhesion").unwrap(), form: 3 }),
+            &start,
+            Effort::FULL,
+        );
         let search = Search { nominal: data.again(&nominal), data, coarse, circumstances: Circumstances::default() };
         let (_, _, named) = believed(&search, &Folds::of(&search.data), fit);
         assert_eq!(named.len(), 1);

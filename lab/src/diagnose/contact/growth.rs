@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::criteria::MUCH_MISSING;
+use super::criteria::{LEAST_GAIN, MUCH_MISSING};
 use super::fit::{Effort, Fit};
 use super::model::{ContactModel, index};
 use super::own_values::{moved_values, own_values};
@@ -80,6 +80,21 @@ impl Search<'_> {
         let model = base.model.with(promise.term);
         let start: Vec<f64> = base.values.iter().chain(&promise.values).copied().collect();
         self.coarse.fit(&model, &start, Effort::QUICK)
+    }
+
+    /// `fit` with the effect of term `at` by another of its laws, the one that every row makes likeliest, where that is likelier than its own: means of rows, which
+    /// a law is chosen by, may tell two laws of one effect apart the other way about.
+    pub(super) fn in_another_form(&self, fit: &Fit, at: usize) -> Option<Fit> {
+        let own = fit.model.terms[at];
+        let less = self.without(fit, at);
+        let promises = self.promises(&less, &|term| term.name() == own.name() && !term.is(&own));
+        let quick = promises.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
+        let full = self.to_the_end(self.coarsely_polished(quick));
+        let rest = Rest::of(&self.data, fit);
+        let priced =
+            full.into_iter().filter(|other| self.is_admissible(other)).map(|other| (self.price(&other, &rest), other));
+        let (price, best) = priced.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        (price < self.price(fit, &rest) - LEAST_GAIN).then_some(best)
     }
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
@@ -178,5 +193,30 @@ mod tests {
         assert!(full.len() < POLISHED, "{}", full.len());
         assert!(full.iter().all(|fit| !search.is_no_answer(&search.data, fit, &full[0])));
         assert!(search.polished(quick, &full[0]).len() > full.len());
+    }
+
+    /// A liquid bridge that is a capillary by its means of rows goes by what every row says, and a bridge stays one.
+    #[test]
+    fn which_law_of_an_effect_it_is_is_told_by_every_row() {
+        const BRIDGE: usize = 3;
+        const CAPILLARY: usize = 4;
+        const SIZES: [f64; 2] = [0.3, 1.2e-3];
+        let trials = [1, 2].map(|seed| TestContact::PLAIN.trial_under(seed, ("adhesion", BRIDGE, &SIZES)));
+        let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        let [data, coarse] = [(), ()].map(|()| Data::new(&trials).weighed(&nominal));
+        let nominal = data.again(&nominal);
+        let search = Search { nominal: nominal.clone(), data, coarse, circumstances: Circumstances::default() };
+        let told_as = |form: usize| {
+            let model = nominal.model.with(Term { effect: crate::effects::find("adhesion").unwrap(), form });
+            let start: Vec<f64> = nominal.values.iter().copied().chain(SIZES).collect();
+            let fit = search.data.fit(&model, &start, Effort::FULL);
+            (search.in_another_form(&fit, nominal.model.terms.len()), fit)
+        };
+        let (other, capillary) = told_as(CAPILLARY);
+        let other = other.unwrap();
+        assert_eq!(other.model.terms.last().map(|term| term.form), Some(BRIDGE), "{:?}", other.model.terms);
+        assert!(other.energy < capillary.energy - 20.0, "{} {}", other.energy, capillary.energy);
+        let (other, _) = told_as(BRIDGE);
+        assert!(other.is_none(), "{:?}", other.map(|other| other.model.terms));
     }
 }

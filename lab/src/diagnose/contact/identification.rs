@@ -161,6 +161,11 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let mut rivals = Vec::new();
     let holds = search.is_told_as_a_law(&fit);
     while let Some((at, rival)) = search.rival(&fit, &named, holds) {
+        // A curve that does better than one law of an effect is no evidence against another law of it.
+        if let Some(other) = search.in_another_form(&fit, at) {
+            (fit, improved, named) = believed(search, &folds, other);
+            continue;
+        }
         rivals.push(rival);
         if !rival.is_refuted {
             break;
@@ -373,6 +378,25 @@ mod tests {
         let part = |at: usize| values[at].hypot(values[at + 1]);
         assert!((part(0) / 1e-3 - 1.0).abs() < 0.05 && (part(2) / 0.25e-3 - 1.0).abs() < 0.1, "{values:?}");
         assert!((values[6] - 0.35).abs() < 2e-3, "{values:?}");
+    }
+
+    /// Means of so many rows that a capillary, or a capillary and layers, are likelier by them than what acts. By every row a curve does better than the capillary
+    /// and none than the bridge, and beside the bridge no layers are needed.
+    #[test]
+    fn a_bridge_that_means_of_rows_do_not_show_is_told_by_the_rows() {
+        for (pull, length, every) in [(0.15, 1.2e-3, 24), (0.15, 0.6e-3, 16), (0.1, 2e-3, 4)] {
+            let recordings = [1, 2].map(|seed| TestContact::PLAIN.bridged(seed, pull, length));
+            let seen =
+                |every: usize| recordings.each_ref().map(|recording| TestContact::seen_in_means(recording, every));
+            let (rows, means) = (seen(1).to_vec(), seen(every));
+            let outcome = identify(rows, &means, &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+            assert_eq!(
+                (names(&outcome), outcome.verdict),
+                (vec!["adhesion"], Verdict::Explained),
+                "{pull} N over {length} m, {every} rows: {:?}",
+                outcome.rivals
+            );
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! A set of effects without those that are not worth having beside the others.
 
+use super::criteria::LEAST_GAIN;
 use super::fit::{Effort, Fit};
 use super::model::{ContactModel, index};
 use super::own_values::{fewer_own_values, moved_values};
+use super::rest::Rest;
 use super::search::Search;
 use crate::diagnose::term::Term;
 use crate::effects::find;
@@ -36,6 +38,27 @@ impl Search<'_> {
                 if !self.is_worth(&best, &less) {
                     best = less;
                     continue 'again;
+                }
+            }
+            return best;
+        }
+    }
+
+    /// `best` without the effects that another law of one of the others does without, as likely as `best` at the price of its values: of several laws of one effect the
+    /// search takes the one that means of rows make likeliest, and what that leaves can look like an effect more.
+    pub(super) fn in_fewer(&self, mut best: Fit) -> Fit {
+        let first = self.nominal.model.terms.len();
+        'again: loop {
+            let rest = Rest::of(&self.data, &best);
+            let own = self.price(&best, &rest);
+            let is_as_good = |other: &Fit| self.price(other, &rest) < own + LEAST_GAIN;
+            for spared in (first..best.model.terms.len()).rev() {
+                let less = self.without(&best, spared);
+                for at in first..less.model.terms.len() {
+                    if let Some(other) = self.in_another_form(&less, at).filter(is_as_good) {
+                        best = other;
+                        continue 'again;
+                    }
                 }
             }
             return best;

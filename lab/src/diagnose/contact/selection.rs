@@ -84,6 +84,7 @@ impl Search<'_> {
             // Its weights are those of a finer law: what was found before is compared under the same.
             sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         }
+        let fit = self.in_fewer(fit);
         let fit = self.with_lines(fit, &mut sets);
         Chosen { fit, sets }
     }

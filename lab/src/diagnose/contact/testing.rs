@@ -142,6 +142,26 @@ impl TestContact {
         recording
     }
 
+    /// The recording with a liquid bridge: leaving, the force falls to the `pull`, N, and no lower, and above the surface goes to nothing in a straight line of `length`, m.
+    pub fn bridged(&self, seed: u64, pull: f64, length: f64) -> Recording {
+        let mut recording = self.recording(seed);
+        let mut is_touched = false;
+        for (row, force) in recording.force.as_mut().unwrap().iter_mut().enumerate() {
+            let x = recording.position[row];
+            let [before, after] = [row.saturating_sub(1), (row + 1).min(recording.position.len() - 1)];
+            let v = 0.5 * RATE * (recording.position[after] - recording.position[before]);
+            is_touched = x > 0.0 || (is_touched && x > -length);
+            let law = self.stiffness * x + self.damping * v;
+            let least = if v < 0.0 { -pull } else { 0.0 };
+            *force += match (x > 0.0, is_touched) {
+                (true, _) => law.max(least) - law.max(0.0),
+                (false, true) => -pull * (1.0 + x / length),
+                (false, false) => 0.0,
+            };
+        }
+        recording
+    }
+
     /// The same in means of `every` rows.
     pub fn seen_in_means(recording: &Recording, every: usize) -> ContactTrial {
         let channel = |noise: f64| Channel { resolution: 0.0, noise };
@@ -155,5 +175,19 @@ impl TestContact {
         let plain = nominal_fit(&Data::new(&trials), &Self::nominal());
         let model = plain.model.with(Term { effect: effects::find(name).unwrap(), form });
         (model, plain.values.iter().chain(own).copied().collect())
+    }
+
+    /// With the force of the effect `name` by its form `form` and its values `own` along the motion as it is seen.
+    pub fn trial_under(&self, seed: u64, (name, form, own): (&str, usize, &[f64])) -> ContactTrial {
+        let (model, values) = self.law_with(name, form, own);
+        let mut trial = self.trial(seed);
+        let trials = [trial.clone()];
+        let data = Data::new(&trials);
+        let nominal = nominal_fit(&data, &Self::nominal());
+        let without = data.residual(&nominal.model, &values[..nominal.values.len()], 0);
+        let with = data.residual(&model, &values, 0);
+        let rows = trial.force.iter_mut().zip(without.iter().zip(&with));
+        rows.for_each(|(force, (without, with))| *force += without - with);
+        trial
     }
 }
