@@ -46,6 +46,7 @@ mod simplicity;
 pub mod spline;
 #[cfg(test)]
 pub mod testing;
+mod told;
 pub mod tones;
 pub mod trial;
 pub mod variance;

@@ -2,14 +2,12 @@
 
 use super::alternative::alternatives;
 use super::circumstances::Circumstances;
-use super::confirmation::believed;
-use super::crosstalk::crosstalk;
 use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::free_curve::Curve;
 use super::held_out::{Folds, rms};
 use super::interval::intervals;
-use super::judgement::{acts_at_a_distance, is_notable, takes_too_little, verdict};
+use super::judgement::{is_notable, verdict};
 use super::learned::{Learned, learned};
 use super::learned_damping::learned_damping;
 use super::model::index;
@@ -19,6 +17,7 @@ use super::parasitic_force::ParasiticForce;
 use super::rest::Rest;
 use super::search::Search;
 use super::selection::Chosen;
+use super::told::Told;
 use super::trial::ContactTrial;
 use super::wandering_zero::{beside_a_wandering_zero, wanders};
 use crate::diagnose::verdict::Verdict;
@@ -149,38 +148,11 @@ fn judged(search: &Search<'_>, chosen: Chosen, start: &[f64]) -> Outcome {
     let folds = Folds::of(data);
     let given = as_given(search, start);
     let refitted = folds.held_out(data, &search.nominal);
-    let (mut fit, mut improved, mut named) = believed(search, &folds, chosen.fit.clone());
-    let crosstalk = crosstalk(search, &fit);
-    let is_something_else =
-        crosstalk.is_some() || takes_too_little(search, &fit, &named) || acts_at_a_distance(search, &fit, &named);
-    if is_something_else {
-        fit = search.nominal.clone();
-        improved = folds.held_out(data, &fit);
-        named.clear();
-    }
-    let mut rivals = Vec::new();
-    let holds = search.is_told_as_a_law(&fit);
-    while let Some((at, rival)) = search.rival(&fit, &named, holds) {
-        // A curve that does better than one law of an effect is no evidence against another law of it.
-        if let Some(other) = search.in_another_form(&fit, at) {
-            (fit, improved, named) = believed(search, &folds, other);
-            continue;
-        }
-        rivals.push(rival);
-        if !rival.is_refuted {
-            break;
-        }
-        (fit, improved, named) = believed(search, &folds, search.without(&fit, at));
-        while let Some(at) = search.not_needed_beside(rival.curve, &fit, &named) {
-            (fit, improved, named) = believed(search, &folds, search.without(&fit, at));
-        }
-    }
-    if named.is_empty() && rivals.is_empty() && !is_something_else {
-        rivals.extend(search.rival_of_nominal());
-    }
+    let told = Told::of(search, &folds, chosen.fit.clone()).against_curves(search, &folds);
+    let is_more_there = told.is_more_there();
+    let Told { mut fit, improved, named, rivals, crosstalk, .. } = told;
     let rest = Rest::of(data, &fit);
     let given_residual = data.residuals(&given.model, &given.values);
-    let is_more_there = is_something_else || !rivals.is_empty();
     let verdict = match (is_more_there, named.is_empty()) {
         (false, _) => verdict(search, &fit, &named, rms(data, &given_residual), [&refitted, &improved]),
         (true, true) => Verdict::Unknown,
