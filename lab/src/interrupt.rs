@@ -98,18 +98,53 @@ pub fn output(command: &mut Command) -> io::Result<Output> {
     child.wait_with_output()
 }
 
-/// It may have ended by itself.
+/// `command` as the leader of a group of its own, with all that it starts: Ctrl-C does not reach it by itself.
 #[cfg(unix)]
-fn end(process: u32) {
-    use nix::sys::signal::{Signal, kill};
-    if let Ok(process) = i32::try_from(process) {
-        let _ = kill(nix::unistd::Pid::from_raw(process), Signal::SIGKILL);
+pub fn leads_its_group(command: &mut Command) -> &mut Command {
+    use std::os::unix::process::CommandExt as _;
+    command.process_group(0)
+}
+
+/// A console tells its own processes.
+#[cfg(not(unix))]
+pub fn leads_its_group(command: &mut Command) -> &mut Command {
+    command
+}
+
+/// Asks `process` and the group that it leads to end, as Ctrl-C does.
+pub fn ask_to_end(process: u32) {
+    signal::send(process, signal::ASKS);
+}
+
+/// Ends `process` and the group that it leads. It may have ended by itself.
+pub fn end(process: u32) {
+    signal::send(process, signal::ENDS);
+}
+
+#[cfg(unix)]
+mod signal {
+    use nix::sys::signal::{Signal, kill, killpg};
+    use nix::unistd::Pid;
+
+    pub(super) const ASKS: Signal = Signal::SIGINT;
+    pub(super) const ENDS: Signal = Signal::SIGKILL;
+
+    pub(super) fn send(process: u32, signal: Signal) {
+        if let Ok(process) = i32::try_from(process).map(Pid::from_raw) {
+            // A process that leads no group is sent it alone.
+            let _ = killpg(process, signal).or_else(|_| kill(process, signal));
+        }
     }
 }
 
 /// A console tells its own processes.
 #[cfg(not(unix))]
-fn end(_process: u32) {}
+mod signal {
+    pub(super) const ASKS: () = ();
+    pub(super) const ENDS: () = ();
+
+    pub(super) fn send(_process: u32, _signal: ()) {}
+}
 
 /// It may have been moved into its place.
 fn remove(path: &Path) {

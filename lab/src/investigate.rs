@@ -7,6 +7,7 @@
 //! controller or of the design. [`record`] is what the folder of an investigation holds, from which it is resumed, and [`report`] the
 //! page. [`trial_of_method`] puts the whole to rigs whose missing physics is concealed from it.
 
+mod bounded_command;
 mod command;
 pub mod command_bed;
 pub mod concealed_bed;

@@ -1,12 +1,13 @@
 //! The command line of `palpate investigate`.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{Context as _, Result};
 use clap::Args;
 use sha2::{Digest as _, Sha256};
 
-use super::command_bed::CommandBed;
+use super::command_bed::{CommandBed, LONGEST_S};
 use super::drive_bed::DriveBed;
 use super::emulated_drive_bed::EmulatedDriveBed;
 use super::record::{Investigation, Setup};
@@ -45,6 +46,9 @@ pub struct InvestigateArgs {
     /// Folder for every round, the report and the model; an investigation that it holds is resumed
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Longest time that a COMMAND may take for a trial, s: it is asked to end then, as by Ctrl-C, 30 s later it is ended, and the trial has failed
+    #[arg(long, value_name = "SECONDS", default_value_t = LONGEST_S, value_parser = clap::value_parser!(u64).range(1..))]
+    pub longest: u64,
     /// Seed of the noise that is simulated, and drawn by the diagnosis: the same seed, the same answer
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -67,7 +71,7 @@ pub fn run(args: &InvestigateArgs) -> Result<()> {
     let places = ["improved.toml", "report.html", super::record::FILE].map(|name| args.out.join(name));
     let outputs: Vec<_> = places.iter().map(|place| ("--out", place.as_path())).collect();
     output_paths::check(&inputs, &outputs)?;
-    let mut bed = test_bed(&args.on, &rig, args.seed)?;
+    let mut bed = test_bed(args, &rig)?;
     let inputs = std::iter::once(&args.rig).chain(&args.trials).map(|path| sha256(path)).collect::<Result<_>>()?;
     let setup = Setup { inputs_sha256: inputs, on: args.on.clone(), limits, seed: args.seed };
     let mut investigation = Investigation::open(&args.out, setup)?;
@@ -97,8 +101,9 @@ pub fn run(args: &InvestigateArgs) -> Result<()> {
     Ok(())
 }
 
-/// What `on` names.
-fn test_bed(on: &str, rig: &Rig, seed: u64) -> Result<Box<dyn TestBed>> {
+/// What `--on` names.
+fn test_bed(args: &InvestigateArgs, rig: &Rig) -> Result<Box<dyn TestBed>> {
+    let (on, seed) = (args.on.as_str(), args.seed);
     if let Some(hidden) = on.strip_prefix("sim:") {
         return Ok(Box::new(SimulatedBed::new(Path::new(hidden), rig, seed)?));
     }
@@ -109,7 +114,7 @@ fn test_bed(on: &str, rig: &Rig, seed: u64) -> Result<Box<dyn TestBed>> {
     if let Some(port) = on.strip_prefix("port:") {
         return Ok(Box::new(DriveBed::new(Path::new(port), rig)?));
     }
-    Ok(Box::new(CommandBed::new(on, rig)))
+    Ok(Box::new(CommandBed::new(on, rig, Duration::from_secs(args.longest))))
 }
 
 fn sha256(path: &Path) -> Result<String> {

@@ -1,12 +1,13 @@
 //! The bed of another author's rig: an executable that runs a reference, and may tell what really happened beside what was recorded.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{Context as _, Result, bail};
 
 use crate::error::InputError;
 use crate::experiment_design::Limits;
-use crate::investigate::command_bed::CommandBed;
+use crate::investigate::command_bed::{CommandBed, LONGEST_S};
 use crate::investigate::monitor::hold_against;
 use crate::investigate::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
 use crate::investigate::watched_bed::{Watched, WatchedBed};
@@ -36,7 +37,7 @@ impl SourceBed {
         let path =
             bed.to_str().with_context(|| InputError::new(&place, "a path that is no text", "a path in UTF-8"))?;
         Ok(Self {
-            command: CommandBed::new(&quoted(path), rig),
+            command: CommandBed::new(&quoted(path), rig, Duration::from_secs(LONGEST_S)),
             place,
             coordinate: rig.coordinate,
             rich,
