@@ -21,34 +21,50 @@ pub const CARRIED_BY_THE_DRIVE: [&str; 2] = ["force_gain", "tool_inertia"];
 /// Names of the effects of the force sensor that the contact tells.
 #[must_use]
 pub fn sensor_effects(contact: &Outcome) -> Vec<&'static str> {
-    sensor_terms(contact).into_iter().map(|at| contact.chosen.model.terms[at].name()).collect()
+    told(contact).into_iter().map(|at| contact.chosen.model.terms[at].name()).collect()
 }
 
 /// The named effects of the sensor, which stand at these places among the contact's terms.
-fn sensor_terms(contact: &Outcome) -> Vec<usize> {
-    let is_of_sensor = |term: &Term| {
-        let spec = term.effect.spec();
-        spec.place == Place::Sensor && !CARRIED_BY_THE_DRIVE.contains(&spec.name)
-    };
+fn told(contact: &Outcome) -> Vec<usize> {
     let named = contact.named.iter().map(|named| named.at);
-    let mut sensors: Vec<usize> = named.filter(|at| is_of_sensor(&contact.chosen.model.terms[*at])).collect();
-    sensors.sort_unstable();
-    sensors
+    named.filter(|at| is_of_the_sensor(&contact.chosen.model.terms[*at])).collect()
 }
 
-/// `trials` with the force as it acted, N or N m: what the named effects of the sensor add to the law's reading along the motion is taken
-/// off, in the means of rows that the contact was looked at in. The drive would take a zero for a load, and what a clipped reading
+/// Those that the rig file states.
+fn known(contact: &Outcome) -> Vec<usize> {
+    (0..contact.known_terms).filter(|at| is_of_the_sensor(&contact.chosen.model.terms[*at])).collect()
+}
+
+fn is_of_the_sensor(term: &Term) -> bool {
+    let spec = term.effect.spec();
+    spec.place == Place::Sensor && !CARRIED_BY_THE_DRIVE.contains(&spec.name)
+}
+
+/// `trials` with the force as it acted, N or N m: what the effects of the sensor, those that the rig file states and those that are named, add to the law's
+/// reading along the motion is taken off, in the means of rows that the contact was looked at in. The drive would take a zero for a load, and what a clipped reading
 /// misses for a force of its own. A zero that wanders does so beside the straight lines of its law, too: what is left is followed as a
 /// random walk. Effort that the reading holds is taken off, too: the drive would be told its own friction for a force.
 #[must_use]
 pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
-    let sensors = sensor_terms(contact);
-    if let Some(crosstalk) = contact.crosstalk {
-        return trials.iter().map(|trial| without_effort(trial, crosstalk)).collect();
-    }
+    let trials: Vec<Recording> = match contact.crosstalk {
+        Some(crosstalk) => trials.iter().map(|trial| without_effort(trial, crosstalk)).collect(),
+        None => trials.to_vec(),
+    };
+    without(contact, trials, [known(contact), told(contact)].concat())
+}
+
+/// `trials` with the force as it is shown, but for what the effects of the sensor that the rig file states add to it.
+#[must_use]
+pub fn as_the_rig_file_has_it(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
+    without(contact, trials.to_vec(), known(contact))
+}
+
+/// `trials` without what the terms `sensors` of the contact add to their force.
+fn without(contact: &Outcome, mut trials: Vec<Recording>, mut sensors: Vec<usize>) -> Vec<Recording> {
     if sensors.is_empty() {
-        return trials.to_vec();
+        return trials;
     }
+    sensors.sort_unstable();
     let shown = &contact.chosen;
     let mut acted = shown.clone();
     for at in sensors.iter().rev() {
@@ -56,7 +72,6 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
         acted = Fit { model, values, ..acted };
     }
     let wanders = sensors.iter().any(|at| shown.model.terms[*at].name() == "force_drift");
-    let mut trials = trials.to_vec();
     for (number, (trial, looked_at)) in trials.iter_mut().zip(&contact.trials).enumerate() {
         let Some(force) = &mut trial.force else { continue };
         let [shown, acted] = [shown, &acted].map(|fit| fit.model.predicted(&fit.values, looked_at, number));
@@ -165,8 +180,10 @@ mod tests {
     use super::*;
     use crate::diagnose::contact::circumstances::Circumstances;
     use crate::diagnose::contact::identification::identify;
+    use crate::diagnose::contact::nominal::NominalContact;
     use crate::diagnose::contact::testing::{FORCE_NOISE, RATE, TestContact};
     use crate::diagnose::interval::NORMAL_97_5;
+    use crate::effects::Resolved;
 
     /// A zero that wanders by 0.05 N in a root second. Eight straight lines in twelve seconds leave 25 mN of it, 0.05 sqrt(1.5 / 6); what is
     /// followed beside them leaves a quarter.
@@ -263,6 +280,30 @@ mod tests {
         let mut unknown = contact(TestContact::PLAIN);
         unknown.verdict = Verdict::Unknown;
         assert!(by_the_law(&unknown, &[1, 2].map(|seed| plain.recording(seed))).is_none());
+    }
+
+    /// A zero of 0.3 N that the rig file states: the force without it is what acted, and what is shown but for what is known.
+    #[test]
+    fn what_the_rig_file_states_of_the_sensor_did_not_act() {
+        let zero = TestContact { zero: 0.3, ..TestContact::PLAIN };
+        let trials = || [1, 2].map(|seed| zero.trial(seed)).to_vec();
+        let effect = crate::effects::find("force_bias").unwrap();
+        let stated = Resolved { effect, form: 0, values: vec![0.28] };
+        let rig = NominalContact { effects: vec![stated], ..TestContact::nominal() };
+        let contact = identify(trials(), &trials(), &rig, Circumstances::default(), &|_| {}).unwrap();
+        assert!(contact.named.is_empty());
+        let shown = [1, 2].map(|seed| zero.recording(seed));
+        for acted in [as_it_acted(&contact, &shown), as_the_rig_file_has_it(&contact, &shown)] {
+            for (acted, shown) in acted.iter().zip(&shown) {
+                let pairs = acted.force.iter().flatten().zip(shown.force.iter().flatten());
+                // 6000 rows of 20 mN tell the zero to a hundredth of a deviation; the spring beside it to some more.
+                assert!(
+                    pairs.clone().all(|(acted, shown)| (shown - acted - 0.3).abs() < 0.1 * FORCE_NOISE),
+                    "{:?}",
+                    pairs.clone().next()
+                );
+            }
+        }
     }
 
     /// A sensor that shows no more than 2 N of a contact that pushes harder: the drive is told of all of it.

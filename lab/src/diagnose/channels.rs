@@ -2,7 +2,9 @@
 
 use anyhow::Result;
 
-use super::acting_force::{CARRIED_BY_THE_DRIVE, LawForce, as_it_acted, by_the_law, deviations_of_law, sensor_effects};
+use super::acting_force::{
+    CARRIED_BY_THE_DRIVE, LawForce, as_it_acted, as_the_rig_file_has_it, by_the_law, deviations_of_law, sensor_effects,
+};
 use super::check::Finding;
 use super::clipped_force::{Spans, clipped_spans};
 use super::contact;
@@ -125,12 +127,14 @@ impl Recorded<'_> {
         if sensors.is_empty() || is_explained || channels.drive.is_none() {
             return Ok(Vec::new());
         }
+        let shown = channels.contact.as_ref().map(|contact| as_the_rig_file_has_it(contact, self.trials));
+        let shown = shown.as_deref().unwrap_or(self.trials);
         // A search takes long: it is asked where the nominal law fits better already.
         let likelihood = |standing: Option<NominalStanding>| standing.map(|standing| standing.log_likelihood);
-        if likelihood(self.standing(self.trials, &[])?) <= likelihood(self.standing(acted, &[])?) {
+        if likelihood(self.standing(shown, &[])?) <= likelihood(self.standing(acted, &[])?) {
             return Ok(Vec::new());
         }
-        let as_shown = self.drive(self.trials, &[])?;
+        let as_shown = self.drive(shown, &[])?;
         Ok(if is_complete(as_shown.as_ref()) { sensors } else { Vec::new() })
     }
 

@@ -9,13 +9,14 @@ use crate::recording::Recording;
 /// Times of a trial from the first to the last of rows that follow each other, s.
 pub type Spans = Vec<[f64; 2]>;
 
-/// When the force of each of `trials` lies beyond the limit of a sensor that `contact` names, by more than its noise. What acts there is known by the
+/// When the force of each of `trials` lies beyond the limit of a sensor that `contact` names or the rig file states, by more than its noise. What acts there is known by the
 /// contact's law alone, whose values' error is alike along the whole of such a stretch: the drive would take it for a force of its own.
 #[must_use]
 pub fn clipped_spans(contact: &Outcome, trials: &[Recording]) -> Vec<Spans> {
     let shown = &contact.chosen;
     let is_limit = |at: &usize| shown.model.terms[*at].name() == "force_saturation";
-    let Some(at) = contact.named.iter().map(|named| named.at).find(is_limit) else { return Vec::new() };
+    let named = contact.named.iter().map(|named| named.at);
+    let Some(at) = (0..contact.known_terms).chain(named).find(is_limit) else { return Vec::new() };
     let (model, values) = without_term(shown, at);
     let acted = Fit { model, values, ..shown.clone() };
     let each = trials.iter().zip(&contact.trials).enumerate();
@@ -49,7 +50,9 @@ mod tests {
     use super::*;
     use crate::diagnose::contact::circumstances::Circumstances;
     use crate::diagnose::contact::identification::identify;
+    use crate::diagnose::contact::nominal::NominalContact;
     use crate::diagnose::contact::testing::{FORCE_NOISE, TestContact};
+    use crate::effects::Resolved;
 
     #[test]
     fn spans_are_of_rows_that_follow_each_other() {
@@ -61,28 +64,32 @@ mod tests {
     /// A sensor that shows no more than 2 N: the rows in which more acts, and no others, but for those within some deviations of its noise of the limit.
     #[test]
     fn a_force_beyond_the_limit_is_clipped_and_no_other_is() {
-        let of = |drawn: TestContact| {
+        let of = |drawn: TestContact, stated: Vec<Resolved>| {
             let trials = || [1, 2].map(|seed| drawn.trial(seed)).to_vec();
-            let contact =
-                identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+            let rig = NominalContact { effects: stated, ..TestContact::nominal() };
+            let contact = identify(trials(), &trials(), &rig, Circumstances::default(), &|_| {}).unwrap();
             clipped_spans(&contact, &[1, 2].map(|seed| drawn.recording(seed)))
         };
-        let clipped = of(TestContact { limit: 2.0, ..TestContact::PLAIN });
-        let mut beyond = 0;
-        for (spans, seed) in clipped.iter().zip([1, 2]) {
-            let whole = TestContact::PLAIN.recording(seed);
-            for (time, force) in whole.time.iter().zip(whole.force.as_ref().unwrap()) {
-                let is_clipped = spans.iter().any(|[start, end]| (*start..=*end).contains(time));
-                // The noise of the drawn row, five deviations, and one by which the force has to be beyond.
-                assert!(
-                    (*force > 2.0 - 6.0 * FORCE_NOISE || !is_clipped)
-                        && (*force < 2.0 + 6.0 * FORCE_NOISE || is_clipped),
-                    "{time} s, {force} N"
-                );
-                beyond += usize::from(is_clipped);
+        let limit = Resolved { effect: crate::effects::find("force_saturation").unwrap(), form: 0, values: vec![2.0] };
+        // The same where the rig file states the limit.
+        for stated in [vec![], vec![limit]] {
+            let clipped = of(TestContact { limit: 2.0, ..TestContact::PLAIN }, stated);
+            let mut beyond = 0;
+            for (spans, seed) in clipped.iter().zip([1, 2]) {
+                let whole = TestContact::PLAIN.recording(seed);
+                for (time, force) in whole.time.iter().zip(whole.force.as_ref().unwrap()) {
+                    let is_clipped = spans.iter().any(|[start, end]| (*start..=*end).contains(time));
+                    // The noise of the drawn row, five deviations, and one by which the force has to be beyond.
+                    assert!(
+                        (*force > 2.0 - 6.0 * FORCE_NOISE || !is_clipped)
+                            && (*force < 2.0 + 6.0 * FORCE_NOISE || is_clipped),
+                        "{time} s, {force} N"
+                    );
+                    beyond += usize::from(is_clipped);
+                }
             }
+            assert!(beyond > 200, "{beyond}");
         }
-        assert!(beyond > 200, "{beyond}");
-        assert!(of(TestContact::PLAIN).iter().all(Vec::is_empty));
+        assert!(of(TestContact::PLAIN, vec![]).iter().all(Vec::is_empty));
     }
 }

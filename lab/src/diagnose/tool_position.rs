@@ -5,7 +5,7 @@
 
 use anyhow::Result;
 
-use super::acting_force::sensor_effects;
+use super::acting_force::{as_the_rig_file_has_it, sensor_effects};
 use super::channels::{Channels, Recorded};
 use super::check::Finding;
 use super::contact;
@@ -31,7 +31,7 @@ pub fn told_at_the_tool(recorded: &Recorded<'_>, channels: Channels) -> Result<(
         return Ok((channels, None));
     }
     // What the contact said of the force sensor it said by another position: the drive feels the force as it is shown.
-    let as_shown = if sensor_effects(contact).is_empty() { None } else { drive_as_shown(recorded)? };
+    let as_shown = if sensor_effects(contact).is_empty() { None } else { drive_as_shown(recorded, contact)? };
     let told = as_shown.as_ref().unwrap_or(drive);
     if !is_behind_a_link(told) {
         return Ok((channels, None));
@@ -62,10 +62,10 @@ fn is_behind_a_link(drive: &Outcome) -> bool {
     drive.chosen.model.terms.iter().any(|term| term.encoder() == Some(Side::Motor))
 }
 
-/// The drive under the force as it was shown.
-fn drive_as_shown(recorded: &Recorded<'_>) -> Result<Option<Outcome>> {
+/// The drive under the force as it was shown, but for what the rig file states of the sensor.
+fn drive_as_shown(recorded: &Recorded<'_>, contact: &contact::outcome::Outcome) -> Result<Option<Outcome>> {
     let known = effects::resolve_all(recorded.rig, recorded.origin)?;
-    let trials = prepare::trials(recorded.rig, recorded.trials);
+    let trials = prepare::trials(recorded.rig, &as_the_rig_file_has_it(contact, recorded.trials));
     let nominal = prepare::nominal(recorded.rig, recorded.trials, known);
     Ok(nominal.and_then(|nominal| identify(trials, &nominal, recorded.seed, recorded.say)))
 }

@@ -167,6 +167,20 @@ fn a_mass_beyond_the_force_sensor_is_part_of_what_the_drive_moves() {
     }
 }
 
+/// What the rig file states of the force sensor is known to the drive, too, which would be told a zero for a load and a delay for another one.
+#[test]
+fn what_the_rig_file_states_of_the_force_sensor_is_missing_nowhere() {
+    for stated in
+        ["[[effect]]\nname = \"force_bias\"\nbias_n = 0.4\n", "[[effect]]\nname = \"channel_delay\"\ndelay_s = 0.008\n"]
+    {
+        let case = Case::new(&(driven_into_the_pad(0) + stated), driven_into_the_pad, stated);
+        let answer = case.diagnose(&[]);
+        assert_eq!(answer["physics"], serde_json::json!([]), "{stated}: {answer:#}");
+        let whole = ["no_mismatch", "parameters"].map(Value::from);
+        assert!(whole.contains(&answer["verdict"]), "{stated}: {}", answer["verdict"]);
+    }
+}
+
 #[test]
 fn play_before_the_pad() {
     // A law that takes the smoothed motion for the motion finds less play and leaves a rest at each reversal.
