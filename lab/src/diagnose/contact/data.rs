@@ -90,6 +90,17 @@ impl<'a> Data<'a> {
         self.expected_noise().hypot(beyond.sqrt())
     }
 
+    /// Weighted squares that the errors of the motion are expected to leave, beside the force sensor's noise: behind an encoder these repeat with the place.
+    #[must_use]
+    pub fn expected_of_motion(&self) -> f64 {
+        let each = self.trials.iter().zip(&self.noise).zip(&self.weights);
+        let of_trial = |((trial, noise), weights): ((&ContactTrial, &Vec<f64>), &Vec<f64>)| {
+            let rows = noise.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+            rows.map(|(variance, weight)| (variance - trial.force_variance).max(0.0) * weight * weight).sum::<f64>()
+        };
+        each.map(of_trial).sum()
+    }
+
     /// Whether the errors of the position are worth more force in the contact than the force sensor's noise is: by the sensors' figures where
     /// noise that remembers is louder than these.
     #[must_use]

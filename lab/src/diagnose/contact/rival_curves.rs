@@ -95,13 +95,17 @@ impl Search<'_> {
         Some(Rival { name: None, curve, gain, is_refuted: false })
     }
 
-    /// The best curve beside `law` that `may` do, and by how much it is likelier than `fit`, where that is more than [`LEAST_GAIN`] and of a size that is told.
+    /// The best curve beside `law` that `may` do, and by how much it is likelier than `fit`, where that is more than [`LEAST_GAIN`], of a size that is told, and takes more than
+    /// the errors of the motion are expected to leave.
     fn better_than(&self, fit: &Fit, law: &Fit, may: impl Fn(&Beside) -> bool) -> Option<(Beside, f64)> {
         let rest = Rest::of(&self.data, fit);
         let curves = self.with_curves(law, &rest).into_iter().filter(may);
         let best = curves.min_by(|a, b| a.price.total_cmp(&b.price))?;
         let gain = self.price(fit, &rest) - best.price;
-        let is_of_size = self.part_of_force(fit.energy - best.left) > LEAST_PART_OF_FORCE.value();
+        let taken = fit.energy - best.left;
+        // A curve takes the errors of the motion as any law of the place does, and they show nothing.
+        let is_of_size =
+            self.part_of_force(taken) > LEAST_PART_OF_FORCE.value() && taken > self.data.expected_of_motion();
         (gain > LEAST_GAIN.value() && is_of_size).then_some((best, gain))
     }
 
@@ -148,9 +152,11 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::circumstances::Circumstances;
+    use super::super::data::Data;
     use super::super::identification::identify;
+    use super::super::nominal::nominal_fit;
     use super::super::outcome::Outcome;
-    use super::super::testing::TestContact;
+    use super::super::testing::{FORCE_NOISE, TestContact};
     use super::*;
     use crate::diagnose::verdict::Verdict;
 
@@ -200,6 +206,23 @@ mod tests {
         let outcome = found(|x, _| -0.025 * (-((x - 4e-3) / 6e-4).powi(2)).exp());
         assert_eq!((outcome.chosen.model.names(outcome.known_terms), outcome.verdict), (vec![], Verdict::Unknown));
         assert_eq!(outcome.rivals.last().map(|rival| rival.curve), Some(Curve::Place), "{:?}", outcome.rivals);
+    }
+
+    /// The same click where the motion is known so badly that its errors are expected to leave a tenth of the noise's power: behind an encoder they repeat with the place.
+    #[test]
+    fn what_the_errors_of_the_motion_leave_is_no_curve() {
+        let click = |x: f64, _: f64| -0.025 * (-((x - 4e-3) / 6e-4).powi(2)).exp();
+        let trials = [1, 2].map(|seed| TestContact::PLAIN.trial_beside(seed, click));
+        let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
+        let rival = |part: f64| {
+            let mut data = Data::new(&trials).weighed(&nominal);
+            data.noise.iter_mut().flatten().for_each(|variance| *variance += part * FORCE_NOISE.powi(2));
+            let nominal = data.again(&nominal);
+            let coarse = Data::new(&trials);
+            let search = Search { nominal, data, coarse, circumstances: Circumstances::default() };
+            search.rival_of_nominal().map(|rival| rival.curve)
+        };
+        assert_eq!([rival(0.0), rival(0.1)], [Some(Curve::Place), None]);
     }
 
     /// Layers are there: no curve is likelier than they are.
