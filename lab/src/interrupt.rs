@@ -111,14 +111,20 @@ pub fn leads_its_group(command: &mut Command) -> &mut Command {
     command
 }
 
-/// Asks `process` and the group that it leads to end, as Ctrl-C does.
-pub fn ask_to_end(process: u32) {
-    signal::send(process, signal::ASKS);
+/// Asks all of the group that `leader` leads to end, as Ctrl-C does.
+pub fn ask_to_end(leader: u32) {
+    signal::send_to_group(leader, signal::ASKS);
 }
 
-/// Ends `process` and the group that it leads. It may have ended by itself.
-pub fn end(process: u32) {
-    signal::send(process, signal::ENDS);
+/// Ends all that is left of the group that `leader` leads, or led.
+pub fn end_group(leader: u32) {
+    signal::send_to_group(leader, signal::ENDS);
+}
+
+/// Ends `process`, and the group that it leads if it leads one. It may have ended by itself.
+fn end(process: u32) {
+    end_group(process);
+    signal::end(process);
 }
 
 #[cfg(unix)]
@@ -129,10 +135,15 @@ mod signal {
     pub(super) const ASKS: Signal = Signal::SIGINT;
     pub(super) const ENDS: Signal = Signal::SIGKILL;
 
-    pub(super) fn send(process: u32, signal: Signal) {
-        if let Ok(process) = i32::try_from(process).map(Pid::from_raw) {
-            // A process that leads no group is sent it alone.
-            let _ = killpg(process, signal).or_else(|_| kill(process, signal));
+    pub(super) fn send_to_group(leader: u32, signal: Signal) {
+        if let Ok(leader) = i32::try_from(leader) {
+            let _ = killpg(Pid::from_raw(leader), signal);
+        }
+    }
+
+    pub(super) fn end(process: u32) {
+        if let Ok(process) = i32::try_from(process) {
+            let _ = kill(Pid::from_raw(process), ENDS);
         }
     }
 }
@@ -143,7 +154,9 @@ mod signal {
     pub(super) const ASKS: () = ();
     pub(super) const ENDS: () = ();
 
-    pub(super) fn send(_process: u32, _signal: ()) {}
+    pub(super) fn send_to_group(_leader: u32, _signal: ()) {}
+
+    pub(super) fn end(_process: u32) {}
 }
 
 /// It may have been moved into its place.

@@ -35,6 +35,12 @@ fn known(contact: &Outcome) -> Vec<usize> {
     (0..contact.known_terms).filter(|at| is_of_the_sensor(&contact.chosen.model.terms[*at])).collect()
 }
 
+/// Both: where the effects of the force sensor stand among the contact's terms.
+#[must_use]
+pub fn sensor_terms(contact: &Outcome) -> Vec<usize> {
+    [known(contact), told(contact)].concat()
+}
+
 fn is_of_the_sensor(term: &Term) -> bool {
     let spec = term.effect.spec();
     spec.place == Place::Sensor && !CARRIED_BY_THE_DRIVE.contains(&spec.name)
@@ -50,7 +56,7 @@ pub fn as_it_acted(contact: &Outcome, trials: &[Recording]) -> Vec<Recording> {
         Some(crosstalk) => trials.iter().map(|trial| without_effort(trial, crosstalk)).collect(),
         None => trials.to_vec(),
     };
-    without(contact, trials, [known(contact), told(contact)].concat())
+    without(contact, trials, sensor_terms(contact))
 }
 
 /// `trials` with the force as it is shown, but for what the effects of the sensor that the rig file states add to it.

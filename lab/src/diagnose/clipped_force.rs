@@ -1,6 +1,6 @@
 //! Where the sensor shows less force than there is.
 
-use super::acting_force::on_clock;
+use super::acting_force::{on_clock, sensor_terms};
 use super::contact::fit::Fit;
 use super::contact::outcome::Outcome;
 use super::contact::pruning::without_term;
@@ -15,8 +15,7 @@ pub type Spans = Vec<[f64; 2]>;
 pub fn clipped_spans(contact: &Outcome, trials: &[Recording]) -> Vec<Spans> {
     let shown = &contact.chosen;
     let is_limit = |at: &usize| shown.model.terms[*at].name() == "force_saturation";
-    let named = contact.named.iter().map(|named| named.at);
-    let Some(at) = (0..contact.known_terms).chain(named).find(is_limit) else { return Vec::new() };
+    let Some(at) = sensor_terms(contact).into_iter().find(is_limit) else { return Vec::new() };
     let (model, values) = without_term(shown, at);
     let acted = Fit { model, values, ..shown.clone() };
     let each = trials.iter().zip(&contact.trials).enumerate();

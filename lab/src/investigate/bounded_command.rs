@@ -5,7 +5,7 @@ use std::process::{Child, Command, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::interrupt::{Process, ask_to_end, end, leads_its_group};
+use crate::interrupt::{Process, ask_to_end, end_group, leads_its_group};
 
 /// Time between two looks at whether it has ended.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -57,12 +57,10 @@ pub fn run(command: &mut Command, bounds: &Bounds<'_>) -> io::Result<Ended> {
 fn bring_to_an_end(child: &mut Child, grace: Duration) -> io::Result<()> {
     ask_to_end(child.id());
     let asked = Instant::now();
-    while asked.elapsed() < grace {
-        if child.try_wait()?.is_some() {
-            return Ok(());
-        }
+    while child.try_wait()?.is_none() && asked.elapsed() < grace {
         std::thread::sleep(LOOK_EVERY);
     }
-    end(child.id());
+    // What it has started can outlive it, and would go on moving the rig.
+    end_group(child.id());
     child.kill().and_then(|()| child.wait()).map(|_| ())
 }

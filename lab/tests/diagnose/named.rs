@@ -170,9 +170,10 @@ fn a_mass_beyond_the_force_sensor_is_part_of_what_the_drive_moves() {
 /// What the rig file states of the force sensor is known to the drive, too, which would be told a zero for a load and a delay for another one.
 #[test]
 fn what_the_rig_file_states_of_the_force_sensor_is_missing_nowhere() {
-    for stated in
-        ["[[effect]]\nname = \"force_bias\"\nbias_n = 0.4\n", "[[effect]]\nname = \"channel_delay\"\ndelay_s = 0.008\n"]
+    for (name, value) in
+        [("force_bias", "bias_n = 0.4"), ("channel_delay", "delay_s = 0.008"), ("force_saturation", "limit_n = 1.5")]
     {
+        let stated = &format!("[[effect]]\nname = \"{name}\"\n{value}\n");
         let case = Case::new(&(driven_into_the_pad(0) + stated), driven_into_the_pad, stated);
         let answer = case.diagnose(&[]);
         assert_eq!(answer["physics"], serde_json::json!([]), "{stated}: {answer:#}");

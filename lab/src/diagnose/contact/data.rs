@@ -95,8 +95,10 @@ impl<'a> Data<'a> {
     pub fn expected_of_motion(&self) -> f64 {
         let each = self.trials.iter().zip(&self.noise).zip(&self.weights);
         let of_trial = |((trial, noise), weights): ((&ContactTrial, &Vec<f64>), &Vec<f64>)| {
+            // Noise that is louder than the sensor's figures say is so in either.
+            let sensor = self.noise_factor * trial.force_variance;
             let rows = noise.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
-            rows.map(|(variance, weight)| (variance - trial.force_variance).max(0.0) * weight * weight).sum::<f64>()
+            rows.map(|(variance, weight)| (variance - sensor).max(0.0) * weight * weight).sum::<f64>()
         };
         each.map(of_trial).sum()
     }

@@ -214,15 +214,21 @@ mod tests {
         let click = |x: f64, _: f64| -0.025 * (-((x - 4e-3) / 6e-4).powi(2)).exp();
         let trials = [1, 2].map(|seed| TestContact::PLAIN.trial_beside(seed, click));
         let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
-        let rival = |part: f64| {
+        let rival = |part: f64, louder: f64| {
             let mut data = Data::new(&trials).weighed(&nominal);
-            data.noise.iter_mut().flatten().for_each(|variance| *variance += part * FORCE_NOISE.powi(2));
+            data.noise
+                .iter_mut()
+                .flatten()
+                .for_each(|variance| *variance = louder * (*variance + part * FORCE_NOISE.powi(2)));
+            data.noise_factor *= louder;
             let nominal = data.again(&nominal);
             let coarse = Data::new(&trials);
             let search = Search { nominal, data, coarse, circumstances: Circumstances::default() };
             search.rival_of_nominal().map(|rival| rival.curve)
         };
-        assert_eq!([rival(0.0), rival(0.1)], [Some(Curve::Place), None]);
+        assert_eq!([rival(0.0, 1.0), rival(0.1, 1.0)], [Some(Curve::Place), None]);
+        // A sensor of twice the power has no worse a motion.
+        assert_eq!(rival(0.0, 2.0), Some(Curve::Place));
     }
 
     /// Layers are there: no curve is likelier than they are.
