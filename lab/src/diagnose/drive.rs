@@ -51,6 +51,8 @@ pub mod noise_at_rest;
 pub mod noise_search;
 pub mod nominal;
 pub mod one_body_filter;
+pub mod order_lines;
+pub mod order_spectrum;
 pub mod outcome;
 pub mod outside_force;
 mod outside_tone;

@@ -14,6 +14,8 @@ pub struct FoundEffect {
     pub stage: Stage,
     /// "symmetric"; the law's name.
     pub form: &'static str,
+    /// Its place among the effect's forms.
+    pub form_index: usize,
     /// By the parameter's name.
     pub values: Vec<(&'static str, f64)>,
     /// "coulomb_friction (symmetric): level 0.45 N (95 %: 0.44 to 0.46)".
@@ -60,6 +62,7 @@ fn found(rig: &Rig, resolved: &Resolved, table: &rig::Effect) -> FoundEffect {
         place: spec.place,
         stage: spec.stage,
         form: form.name,
+        form_index: resolved.form,
         values,
         words: format!("{} ({}): {}", spec.name, form.name, parameters.join(", ")),
     }

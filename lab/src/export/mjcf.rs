@@ -9,6 +9,7 @@ use super::mjcf_model::MjcfModel;
 use super::passive_force::{self, Bristles};
 use super::xml_edit::{self, Changes, comment};
 use super::{Export, Exported, Refused};
+use crate::effects::waves;
 use crate::error::InputError;
 
 /// The user's model with the effects in it.
@@ -222,16 +223,11 @@ impl Writer<'_> {
     }
 
     fn cogging(&mut self, effect: &FoundEffect) {
-        let k = std::f64::consts::TAU / effect.value("pitch");
-        let (sine, cosine) = (-effect.value("sine"), -effect.value("cosine"));
-        self.passive_force(&effect.words, |joint| passive_force::wave(joint, "cogging", k, sine, cosine));
-        let second = match effect.form {
-            "two_harmonics" => 2.0 * k,
-            "two_patterns" => std::f64::consts::TAU / effect.value("second_pitch"),
-            _ => return,
-        };
-        let (sine, cosine) = (-effect.value("second_sine"), -effect.value("second_cosine"));
-        self.passive_force(&effect.words, |joint| passive_force::wave(joint, "cogging_2", second, sine, cosine));
+        let values: Vec<f64> = effect.values.iter().map(|(_, value)| *value).collect();
+        for (at, [sine, cosine, k]) in waves(effect.form_index, &values).into_iter().enumerate() {
+            let name = if at == 0 { "cogging".to_owned() } else { format!("cogging_{}", at + 1) };
+            self.passive_force(&effect.words, |joint| passive_force::wave(joint, &name, k, -sine, -cosine));
+        }
     }
 
     fn passive_force(&mut self, words: &str, element: impl FnOnce(&str) -> String) {

@@ -5,11 +5,10 @@ use super::fit::{Effort, Fit, fit};
 use super::likelihood::Data;
 use super::model::{Model, NOMINAL, index};
 use super::noise::Noise;
+use super::order_spectrum::OrderSpectrum;
 use super::ripples::ripples;
-use super::scales::Scales;
 use super::term::{Term, wavenumber};
 use super::trial::DriveTrial;
-use crate::diagnose::periodogram::periodogram;
 
 /// A term and the values that its search starts from.
 pub struct Candidate {
@@ -60,7 +59,7 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
         offer(Term::AngleLoad, if scales.is_rotary { vec![vec![0.0; 3]] } else { slow });
     }
     if ripples(base).len() < MOST_RIPPLES {
-        let pitches = repeating_pitches(data, &scales, disturbance);
+        let pitches = OrderSpectrum::of(data, &scales, disturbance).pitches(PITCHES);
         offer(Term::Cogging, pitches.into_iter().map(|pitch| vec![0.0, 0.0, wavenumber(pitch)]).collect());
     }
     if !has("effort_lag") {
@@ -202,41 +201,6 @@ fn starting_points(base: &Fit, own: &[f64]) -> Vec<(Vec<f64>, Noise)> {
     vec![(fitted, base.noise), (given, little)]
 }
 
-/// Cells of the finest pitch that the way is divided into.
-const CELLS_PER_PITCH: f64 = 6.0;
-const MOST_CELLS: f64 = 24_000.0;
-const MOST_PITCHES: f64 = 8_000.0;
-
-/// The pitches along the way at which the disturbance repeats, the strongest first: a periodogram over the position.
-fn repeating_pitches(data: &Data<'_>, scales: &Scales, disturbance: &[Vec<f64>]) -> Vec<f64> {
-    let finest = (4.0 * scales.resolution).max(scales.travel / 4000.0);
-    let cells = (scales.travel / finest * CELLS_PER_PITCH).clamp(64.0, MOST_CELLS) as usize;
-    let width = scales.travel / (cells - 1) as f64;
-    let (mut sums, mut counts) = (vec![0.0; cells], vec![0.0; cells]);
-    for (trial, force) in data.trials.iter().zip(disturbance) {
-        for (position, force) in trial.position.iter().zip(force) {
-            let cell = (((position - scales.lowest) / width) as usize).min(cells - 1);
-            sums[cell] += force;
-            counts[cell] += 1.0;
-        }
-    }
-    let mean = sums.iter().sum::<f64>() / counts.iter().sum::<f64>().max(1.0);
-    let centred: Vec<(f64, f64)> = (0..cells)
-        .filter(|cell| counts[*cell] > 0.0)
-        .map(|cell| (cell as f64 * width, sums[cell] - mean * counts[cell]))
-        .collect();
-    let (first, spacing) = (2.0 / scales.travel, 0.4 / scales.travel);
-    let lines = ((1.0 / finest - first) / spacing).clamp(0.0, MOST_PITCHES) as usize;
-    let powers = periodogram(&centred, first, spacing, lines);
-    let pitches = (0..lines).map(|line| 1.0 / (first + line as f64 * spacing));
-    let power: Vec<(f64, f64)> = pitches.zip(powers).collect();
-    let mut peaks: Vec<(f64, f64)> =
-        power.windows(3).filter(|w| w[1].1 >= w[0].1 && w[1].1 > w[2].1).map(|w| w[1]).collect();
-    peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
-    peaks.truncate(PITCHES);
-    peaks.into_iter().map(|(pitch, _)| pitch).collect()
-}
-
 /// `fit` with Stribeck friction in the place of Coulomb friction, its term `at`, and values to start from.
 #[must_use]
 pub fn stribeck_for(fit: &Fit, at: usize) -> [(Model, Vec<f64>); STRIBECK_SPEEDS.len()] {
@@ -268,7 +232,11 @@ pub fn simpler(fit: &Fit, at: usize) -> Vec<(Model, Vec<f64>)> {
         Term::Stribeck => vec![replaced(Term::Coulomb, &[values[0] + 0.3 * values[1]])],
         Term::Sublinear if !fit.model.terms.iter().any(other_rub) => vec![replaced(Term::Coulomb, &[0.5 * values[0]])],
         Term::AngleLoad => vec![replaced(Term::ConstantLoad, &[0.0])],
-        Term::TwoRipples => values.chunks_exact(3).map(|one| replaced(Term::Cogging, one)).collect(),
+        Term::Ripples(count) => {
+            let fewer = if *count == 2 { Term::Cogging } else { Term::Ripples(count - 1) };
+            let without = |wave: usize| [&values[..3 * wave], &values[3 * (wave + 1)..]].concat();
+            (0..*count).rev().map(|wave| replaced(fewer.clone(), &without(wave))).collect()
+        }
         Term::Play(side) => {
             vec![replaced(Term::Compliance(*side), &[0.1 * values[0], values[1], values[2], values[4]])]
         }

@@ -31,7 +31,7 @@ thresholds! { "drive";
     MOST_OF_THE_REST = 0.75, "1", chosen;
     /// As [`LEAST_PART_OF_ALL`] for a term whose shape is free, as the pitch of a ripple or the exponent of sub-linear friction: it follows any mismatch
     /// of such a kind. Chosen, on the wrist of an arm whose other axes leave a wavy load of 0.16, on a ball screw whose published law
-    /// leaves 0.15 that an exponent takes, and on motors whose cogging is all that is missing.
+    /// leaves 0.15 that an exponent takes, and on motors whose cogging is all that is missing. A ripple that is a line of the force over the way needs none.
     LEAST_FREE_SHAPE_PART = 0.2, "1", chosen;
     /// Part of the unexplained force that is left, below which nothing further is looked for.
     NEGLIGIBLE_PART = 0.05, "1", chosen;

@@ -8,7 +8,7 @@ use super::load_share::{HALF, OfHalves, possible};
 use super::model::index;
 use super::scales::Scales;
 use super::term::Term;
-use crate::effects::{Effect, Resolved, find};
+use crate::effects::{Effect, Resolved, find, waves};
 
 /// An effect of the list with its values and their 95 % intervals.
 pub struct NamedEffect {
@@ -68,7 +68,11 @@ pub fn named(fit: &Fit, intervals: &[[f64; 2]], at: usize) -> Option<NamedEffect
         Term::AngleLoad if fit.model.scales.is_rotary => (1, same(&[0, 1, 2])),
         Term::AngleLoad => (2, [same(&[0, 1]), vec![pitch(2)]].concat()),
         Term::Cogging => (0, [same(&[0, 1]), vec![pitch(2)]].concat()),
-        Term::TwoRipples => (2, [same(&[0, 1, 3, 4]), vec![pitch(2), pitch(5)]].concat()),
+        Term::Ripples(2) => (2, [same(&[0, 1, 3, 4]), vec![pitch(2), pitch(5)]].concat()),
+        Term::Ripples(count) => {
+            let wave = |one: usize| [same(&[3 * one, 3 * one + 1]), vec![pitch(3 * one + 2)]].concat();
+            (*count, (0..*count).flat_map(wave).collect())
+        }
         Term::Compliance(side) => {
             let (stiffness, damping) = (of_share(*side, |of| of.stiffness, 0), of_share(*side, |of| of.stiffness, 1));
             let motor = (1.0 - values[2]) * fit.values[index::INERTIA];
@@ -106,8 +110,10 @@ pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Ter
         ("gravity_load", 1) => (Term::AngleLoad, v[..3].to_vec()),
         ("gravity_load", _) => (Term::AngleLoad, vec![v[0], v[1], TAU / v[2]]),
         ("cogging", 0) => (Term::Cogging, vec![v[0], v[1], TAU / v[2]]),
-        ("cogging", 1) => (Term::TwoRipples, vec![v[0], v[1], TAU / v[4], v[2], v[3], 2.0 * TAU / v[4]]),
-        ("cogging", _) => (Term::TwoRipples, vec![v[0], v[1], TAU / v[4], v[2], v[3], TAU / v[5]]),
+        ("cogging", form) => {
+            let waves = waves(form, v);
+            (Term::Ripples(waves.len()), waves.concat())
+        }
         ("effort_saturation", 0) => (Term::EffortLimit, vec![v[0]]),
         ("effort_saturation", _) => (Term::SmoothLimit, vec![v[0]]),
         ("effort_lag", _) => (Term::EffortLag, vec![v[0]]),
@@ -164,6 +170,26 @@ mod tests {
                 for (end, expected) in told.intervals[0].iter().zip(expected) {
                     assert!((end / expected - 1.0).abs() < 1e-12, "{name} {side:?}: {:?}", told.intervals[0]);
                 }
+            }
+        }
+    }
+
+    /// Each form of a cogging is the same waves in the model, and told as it was but for the form of two harmonics, which is one of two patterns.
+    #[test]
+    fn what_a_rig_file_holds_of_a_cogging_is_told_again() {
+        let waves = [[0.1, -0.2, 0.5], [0.3, 0.0, 0.25], [0.05, 0.02, 0.125]];
+        let two = |end: &[f64]| [&waves[0][..2], &waves[1][..2], end].concat();
+        let forms = [(0, waves[0].to_vec(), 0), (1, two(&[0.5]), 2), (2, two(&[0.5, 0.25]), 2), (3, waves.concat(), 3)];
+        for (form, values, told_form) in forms {
+            let resolved = Resolved { effect: find("cogging").unwrap(), form, values: values.clone() };
+            let (term, own) = known(&resolved, &SCALES, Side::Motor).unwrap();
+            let fit = fit_of(&[term], &own);
+            let intervals: Vec<[f64; 2]> = fit.values.iter().map(|value| [value - 0.01, value + 0.01]).collect();
+            let told = named(&fit, &intervals, 0).unwrap();
+            let expected = if form == 1 { two(&[0.5, 0.25]) } else { values };
+            assert_eq!((told.form, told.values.len()), (told_form, expected.len()));
+            for ((value, given), ends) in told.values.iter().zip(&expected).zip(&told.intervals) {
+                assert!((value - given).abs() < 1e-12 && ends[0] < *value && *value < ends[1], "{:?}", told.values);
             }
         }
     }

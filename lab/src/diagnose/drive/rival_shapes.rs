@@ -79,7 +79,7 @@ fn quickly_fitted(data: &Data<'_>, start: &Fit) -> Fit {
 fn is_of_one_kind(shape: &Term, term: &Term) -> bool {
     match shape {
         Term::Curve { .. } => {
-            matches!(term, Term::ConstantLoad | Term::AngleLoad | Term::Cogging | Term::TwoRipples)
+            matches!(term, Term::ConstantLoad | Term::AngleLoad | Term::Cogging | Term::Ripples(_))
         }
         _ => term.is_friction(),
     }

@@ -99,7 +99,9 @@ impl Search<'_> {
             }
         }
         say(&format!("the drive: {}; without each term", self.so_far(&best)));
-        let fit = self.believed(self.pruned(self.creeping(best, &mut sets)), &sets);
+        let best = self.creeping(best, &mut sets);
+        let best = self.with_order_lines(best, &mut sets);
+        let fit = self.believed(self.pruned(best), &sets);
         Chosen { fit, sets: distinct(sets) }
     }
 

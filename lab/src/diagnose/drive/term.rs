@@ -10,6 +10,7 @@ use super::law::{DriveLaw, Link, Periodic, Side};
 use super::load_share::{self, OfHalves, of_friction};
 use super::range::{Prior, Range};
 use super::scales::Scales;
+use crate::effects::MOST_PATTERNS;
 
 /// A term with its law.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +33,8 @@ pub enum Term {
     AngleLoad,
     /// A load that repeats along the way many times.
     Cogging,
-    /// Two such loads, as those of a magnet's pitch and of a slot's, or a wave and one of its harmonics.
-    TwoRipples,
+    /// So many such loads, two or more, as those of a magnet's pitch and of a slot's, or a wave and its harmonics.
+    Ripples(usize),
     /// Effort that ends at a limit.
     EffortLimit,
     /// Effort that nears a limit, as of iron that saturates.
@@ -88,6 +89,9 @@ const LONGEST_PITCH_RAD: f64 = std::f64::consts::PI;
 /// Largest error of the factor of a load, in its deviations, that is still one of its values.
 const WORST_LOAD: f64 = 3.0;
 
+/// Where the wavenumbers stand among the values of ripples.
+const PITCHES: [usize; MOST_PATTERNS] = [2, 5, 8, 11, 14, 17];
+
 impl Term {
     /// Name of the effect, as the contract has it.
     #[must_use]
@@ -99,7 +103,7 @@ impl Term {
             Self::Presliding => "presliding",
             Self::LoadFriction => "load_dependent_friction",
             Self::ConstantLoad | Self::AngleLoad => "gravity_load",
-            Self::Cogging | Self::TwoRipples => "cogging",
+            Self::Cogging | Self::Ripples(_) => "cogging",
             Self::EffortLimit | Self::SmoothLimit => "effort_saturation",
             Self::EffortLag => "effort_lag",
             Self::Compliance(_) => "transmission_compliance",
@@ -123,6 +127,12 @@ impl Term {
     #[must_use]
     pub const fn is_friction(&self) -> bool {
         matches!(self, Self::Coulomb | Self::AsymmetricCoulomb | Self::Stribeck | Self::Sublinear | Self::LoadFriction)
+    }
+
+    /// Whether it repeats along the way many times.
+    #[must_use]
+    pub const fn is_ripple(&self) -> bool {
+        matches!(self, Self::Cogging | Self::Ripples(_))
     }
 
     /// Whether it parts motor and load.
@@ -173,7 +183,7 @@ impl Term {
                 let turn = if scales.is_rotary { LONGEST_PITCH_RAD } else { f64::INFINITY };
                 vec![any, any, Range::relative(wavenumber((0.5 * scales.travel).min(turn)), wavenumber(finest))]
             }
-            Self::TwoRipples => [Self::Cogging.ranges(scales), Self::Cogging.ranges(scales)].concat(),
+            Self::Ripples(count) => Self::Cogging.ranges(scales).repeat(*count),
             Self::EffortLimit => {
                 vec![Range::absolute(0.2 * scales.effort, scales.peak_effort, 0.02 * scales.effort)]
             }
@@ -240,7 +250,7 @@ impl Term {
             Self::Stribeck => &[0, 1, 2],
             Self::AsymmetricCoulomb | Self::Sublinear => &[0, 1],
             Self::Cogging => &[2],
-            Self::TwoRipples => &[2, 5],
+            Self::Ripples(count) => PITCHES.split_at(*count).0,
             // Seen from the load alone, one share of the inertia is as good as another (see [`OfHalves`]).
             Self::Compliance(Side::Load) => &[0],
             Self::Compliance(Side::Motor) => &[0, 2],
@@ -253,7 +263,7 @@ impl Term {
     /// Whether a value of it sets its shape, beside its size.
     #[must_use]
     pub const fn has_free_shape(&self, scales: &Scales) -> bool {
-        matches!(self, Self::Cogging | Self::TwoRipples | Self::Sublinear)
+        matches!(self, Self::Cogging | Self::Ripples(_) | Self::Sublinear)
             || (matches!(self, Self::AngleLoad) && !scales.is_rotary)
     }
 
@@ -285,7 +295,7 @@ impl Term {
             Self::AngleLoad | Self::Cogging => {
                 law.periodic.push(Periodic { sine: values[0], cosine: values[1], wavenumber: values[2] });
             }
-            Self::TwoRipples => {
+            Self::Ripples(_) => {
                 values.chunks_exact(3).for_each(|one| Self::Cogging.apply(one, scales, law));
             }
             Self::EffortLimit => law.limit = EffortLimit::Sharp(values[0]),

@@ -65,7 +65,7 @@ impl Search<'_> {
         let is_of_interest = self.unexplained(less) > LEAST_PART_OF_EFFORT * self.scales.effort;
         self.explains_rows(more, less)
             && is_likelier(more, less)
-            && worth.is_of_size(is_free, is_of_interest)
+            && (worth.is_of_size(is_free, is_of_interest) || self.is_worth_as_a_line(more, less))
             && worth.taken > LEAST_PART_OF_EFFORT * self.scales.effort
             && worth.throughout > LEAST_THROUGHOUT
     }

@@ -14,8 +14,56 @@ const fn part(name: &'static str) -> Parameter {
     Parameter::new(name, Word::new("N", "N m"), "part of the ripple", f64::NEG_INFINITY, f64::INFINITY)
 }
 
+const fn way(name: &'static str) -> Parameter {
+    Parameter::new(name, Word::new("m", "rad"), "way over which the pattern repeats", 0.0, f64::INFINITY)
+}
+
 const PITCH: Parameter =
     Parameter::new("pitch", Word::new("m", "rad"), "way over which it repeats", 0.0, f64::INFINITY);
+
+/// Patterns at most: of a slotted motor its slots, its poles, and their sums and differences.
+pub const MOST_PATTERNS: usize = 6;
+
+/// Of each pattern in turn, as the forms of three patterns and more have them.
+static PATTERNS: [Parameter; 3 * MOST_PATTERNS] = [
+    part("sine"),
+    part("cosine"),
+    way("pitch"),
+    part("second_sine"),
+    part("second_cosine"),
+    way("second_pitch"),
+    part("third_sine"),
+    part("third_cosine"),
+    way("third_pitch"),
+    part("fourth_sine"),
+    part("fourth_cosine"),
+    way("fourth_pitch"),
+    part("fifth_sine"),
+    part("fifth_cosine"),
+    way("fifth_pitch"),
+    part("sixth_sine"),
+    part("sixth_cosine"),
+    way("sixth_pitch"),
+];
+
+const fn patterns(name: &'static str, count: usize) -> Form {
+    Form {
+        name,
+        equation: "load = the sum over the patterns of sine sin(2 pi position / pitch) + cosine cos(2 pi position / pitch)",
+        parameters: PATTERNS.split_at(3 * count).0,
+    }
+}
+
+/// The waves of the form numbered `form` with `values`: sine, cosine, and wavenumber, rad/m or periods a turn.
+#[must_use]
+pub fn waves(form: usize, values: &[f64]) -> Vec<[f64; 3]> {
+    let wave = |sine: f64, cosine: f64, pitch: f64| [sine, cosine, TAU / pitch.max(f64::MIN_POSITIVE)];
+    match form {
+        1 => vec![wave(values[0], values[1], values[4]), wave(values[2], values[3], 0.5 * values[4])],
+        2 => vec![wave(values[0], values[1], values[4]), wave(values[2], values[3], values[5])],
+        _ => values.chunks_exact(3).map(|one| wave(one[0], one[1], one[2])).collect(),
+    }
+}
 
 static SPEC: EffectSpec = EffectSpec {
     name: "cogging",
@@ -52,6 +100,10 @@ static SPEC: EffectSpec = EffectSpec {
                 ),
             ],
         },
+        patterns("three_patterns", 3),
+        patterns("four_patterns", 4),
+        patterns("five_patterns", 5),
+        patterns("six_patterns", 6),
     ],
     excited_by: "slow motion over many pitches",
     resembles: &["gravity_load"],
@@ -68,15 +120,32 @@ impl Effect for Cogging {
     }
 
     fn act_on_drive(&self, form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
-        let pitches = match form {
-            0 => [values[2]; 2],
-            1 => [values[4], 0.5 * values[4]],
-            _ => [values[4], values[5]],
-        };
-        let waves = values.chunks_exact(2).take(if form == 0 { 1 } else { 2 });
-        for (wave, pitch) in waves.zip(pitches) {
-            let (sine, cosine) = (TAU / pitch.max(f64::MIN_POSITIVE) * push.position).sin_cos();
-            push.resistance += wave[0] * sine + wave[1] * cosine;
+        for [along_sine, along_cosine, wavenumber] in waves(form, values) {
+            let (sine, cosine) = (wavenumber * push.position).sin_cos();
+            push.resistance += along_sine * sine + along_cosine * cosine;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_waves_of_every_form_are_its_equation() {
+        assert_eq!(waves(0, &[1.0, 2.0, 0.5]), [[1.0, 2.0, TAU / 0.5]]);
+        assert_eq!(waves(1, &[1.0, 2.0, 3.0, 4.0, 0.5]), [[1.0, 2.0, TAU / 0.5], [3.0, 4.0, 2.0 * TAU / 0.5]]);
+        assert_eq!(waves(2, &[1.0, 2.0, 3.0, 4.0, 0.5, 0.2]), [[1.0, 2.0, TAU / 0.5], [3.0, 4.0, TAU / 0.2]]);
+        for (form, count) in [(3, 3), (4, 4), (5, 5), (6, MOST_PATTERNS)] {
+            let names: Vec<&str> = SPEC.forms[form].parameters.iter().map(|parameter| parameter.name).collect();
+            assert_eq!(names.len(), 3 * count, "{names:?}");
+            let each = (0..count).flat_map(|at| [at as f64, -1.0, 0.1 * (at + 1) as f64]);
+            let expected: Vec<[f64; 3]> =
+                (0..count).map(|at| [at as f64, -1.0, TAU / (0.1 * (at + 1) as f64)]).collect();
+            assert_eq!(waves(form, &each.collect::<Vec<f64>>()), expected);
+            for (wave, part) in names.chunks(3).zip(["", "second_", "third_", "fourth_", "fifth_", "sixth_"]) {
+                assert_eq!(wave, ["sine", "cosine", "pitch"].map(|end| format!("{part}{end}")));
+            }
         }
     }
 }

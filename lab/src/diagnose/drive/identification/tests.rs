@@ -246,13 +246,24 @@ fn an_effort_that_nears_its_limit_is_saturated_smoothly() {
 fn a_ripple_and_its_harmonic_are_one_cogging_of_two_pitches() {
     let outcome = identified(&TestDrive { ripple: 0.3, third_ripple: 0.2, ..TestDrive::PLAIN }, 0.75, 5.0, 39);
     assert_eq!((outcome.verdict, outcome.named.len()), (Verdict::Explained, 1));
-    assert_eq!(outcome.chosen.model.terms, [Term::TwoRipples]);
+    assert_eq!(outcome.chosen.model.terms, [Term::Ripples(2)]);
     let own = &outcome.chosen.values[outcome.chosen.model.values_of(0)];
     let pitches = [own[2], own[5]].map(|wavenumber| TAU / wavenumber);
     let sizes = [own[0].hypot(own[1]), own[3].hypot(own[4])];
     for (found, truth) in pitches.iter().zip([5e-3, 5e-3 / 3.0]).chain(sizes.iter().zip([0.3, 0.2])) {
         assert!((found / truth - 1.0).abs() < 0.05, "{pitches:?} {sizes:?}");
     }
+}
+
+/// Dry friction leaves ten times as much, and a white force as much again as the ripple: of all that is missing that is no tenth, and of the rest a half. Its line stands out
+/// of the orders around it.
+#[test]
+fn a_small_ripple_beside_friction_is_told_by_its_line() {
+    let drive = TestDrive { third_ripple: 0.04, coulomb: 0.8, disturbance: 2e-5, ..TestDrive::PLAIN };
+    let outcome = identified(&drive, 0.75, 5.0, 40);
+    assert_eq!(outcome.chosen.model.names(), ["cogging", "coulomb_friction"]);
+    let plain = identified(&TestDrive { third_ripple: 0.0, ..drive }, 0.75, 5.0, 40);
+    assert_eq!(plain.chosen.model.names(), ["coulomb_friction"]);
 }
 
 /// While its sides are apart the motor is not seen at all, and the load that is seen flies on.
