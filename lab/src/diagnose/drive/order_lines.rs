@@ -57,3 +57,44 @@ fn ripple_beyond(more: &Fit, less: &Fit) -> Option<f64> {
     let nearest = |one: &f64| known.iter().map(|other| (one - other).abs()).fold(f64::INFINITY, f64::min);
     all.into_iter().max_by(|a, b| nearest(a).total_cmp(&nearest(b)))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::super::testing::{TestDrive, search_over};
+    use super::*;
+
+    /// Of a white force of 6 mN over 20 Hz; there are 30 and 50 of them to the travel.
+    #[test]
+    fn every_ripple_that_is_a_line_is_told_and_they_are_one_cogging() {
+        let drive = TestDrive { third_ripple: 0.1, fifth_ripple: 0.1, disturbance: 1e-6, ..TestDrive::PLAIN };
+        let trials = [drive.trial(5.0, 8), drive.trial(5.0, 9)];
+        let search = search_over(&trials, &drive);
+        let mut sets = Vec::new();
+        let found = search.with_order_lines(search.nominal.clone(), &mut sets);
+        assert_eq!((found.model.terms.as_slice(), sets.len()), (&[Term::Ripples(2)][..], 2));
+        let own = &found.values[found.model.values_of(0)];
+        for (wave, (pitch, size)) in own.chunks(3).zip([(5e-3 / 3.0, 0.1), (1e-3, 0.1)]) {
+            // Ten seconds tell a size to a twentieth, and a pitch to a twentieth of a period over the travel.
+            assert!((TAU / wave[2] / pitch - 1.0).abs() < 1e-3, "{own:?}");
+            assert!((wave[0].hypot(wave[1]) - size).abs() < 0.005, "{own:?}");
+        }
+        // Where they are known there is nothing more.
+        assert_eq!(search.with_order_lines(found.clone(), &mut sets).model, found.model);
+        assert_eq!(sets.len(), 2);
+    }
+
+    #[test]
+    fn a_ripple_beyond_is_the_one_that_the_smaller_law_lacks() {
+        let of = |waves: &[f64]| {
+            let own: Vec<f64> = waves.iter().flat_map(|wave| [1.0, 0.0, *wave]).collect();
+            super::super::testing::fit_of(&vec![Term::Cogging; waves.len()], &own)
+        };
+        assert_eq!(ripple_beyond(&of(&[300.0, 500.0, 900.0]), &of(&[301.0, 899.0])), Some(500.0));
+        assert_eq!(ripple_beyond(&of(&[300.0]), &of(&[])), Some(300.0));
+        assert_eq!(ripple_beyond(&of(&[300.0, 500.0]), &of(&[])), None);
+        let rubs = super::super::testing::fit_of(&[Term::Coulomb, Term::Cogging], &[0.1, 1.0, 0.0, 300.0]);
+        assert_eq!(ripple_beyond(&rubs, &of(&[])), None);
+    }
+}

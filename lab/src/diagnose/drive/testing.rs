@@ -61,6 +61,8 @@ pub struct TestDrive {
     pub ripple: f64,
     /// N, the same at a third of that pitch.
     pub third_ripple: f64,
+    /// N, the same at a fifth of that pitch.
+    pub fifth_ripple: f64,
     /// N, constant load.
     pub load: f64,
     /// Share of the [`known_load`] that rubs, either way.
@@ -122,6 +124,7 @@ impl TestDrive {
         root: 0.0,
         ripple: 0.0,
         third_ripple: 0.0,
+        fifth_ripple: 0.0,
         load: 0.0,
         geared: 0.0,
         iron: f64::INFINITY,
@@ -199,7 +202,8 @@ impl TestDrive {
                 let viscous = self.viscous * (1.0 + against + self.cold * (-0.5 * t).exp());
                 let root = self.root * v.signum() * (v.abs() / 0.1).sqrt();
                 let wave = |size: f64, pitch: f64| size * (std::f64::consts::TAU * x / pitch).sin();
-                let ripple = wave(self.ripple, 5e-3) + wave(self.third_ripple, 5e-3 / 3.0);
+                let ripple =
+                    wave(self.ripple, 5e-3) + wave(self.third_ripple, 5e-3 / 3.0) + wave(self.fifth_ripple, 1e-3);
                 let dry = root + bristle;
                 let free = v + step
                     * (given - passed - dry - ripple - (viscous - on_load) * v - self.load - self.spring * (x + 0.04)
