@@ -224,7 +224,7 @@ impl Writer<'_> {
 
     fn cogging(&mut self, effect: &FoundEffect) {
         let values: Vec<f64> = effect.values.iter().map(|(_, value)| *value).collect();
-        for (at, [sine, cosine, k]) in waves(effect.form_index, &values).into_iter().enumerate() {
+        for (at, [sine, cosine, k]) in waves(effect.form_index, &values).enumerate() {
             let name = if at == 0 { "cogging".to_owned() } else { format!("cogging_{}", at + 1) };
             self.passive_force(&effect.words, |joint| passive_force::wave(joint, &name, k, -sine, -cosine));
         }

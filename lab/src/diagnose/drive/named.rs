@@ -111,7 +111,7 @@ pub fn known(resolved: &Resolved, scales: &Scales, encoder: Side) -> Option<(Ter
         ("gravity_load", _) => (Term::AngleLoad, vec![v[0], v[1], TAU / v[2]]),
         ("cogging", 0) => (Term::Cogging, vec![v[0], v[1], TAU / v[2]]),
         ("cogging", form) => {
-            let waves = waves(form, v);
+            let waves: Vec<[f64; 3]> = waves(form, v).collect();
             (Term::Ripples(waves.len()), waves.concat())
         }
         ("effort_saturation", 0) => (Term::EffortLimit, vec![v[0]]),

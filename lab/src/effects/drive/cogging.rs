@@ -55,14 +55,17 @@ const fn patterns(name: &'static str, count: usize) -> Form {
 }
 
 /// The waves of the form numbered `form` with `values`: sine, cosine, and wavenumber, rad/m or periods a turn.
-#[must_use]
-pub fn waves(form: usize, values: &[f64]) -> Vec<[f64; 3]> {
-    let wave = |sine: f64, cosine: f64, pitch: f64| [sine, cosine, TAU / pitch.max(f64::MIN_POSITIVE)];
-    match form {
-        1 => vec![wave(values[0], values[1], values[4]), wave(values[2], values[3], 0.5 * values[4])],
-        2 => vec![wave(values[0], values[1], values[4]), wave(values[2], values[3], values[5])],
-        _ => values.chunks_exact(3).map(|one| wave(one[0], one[1], one[2])).collect(),
-    }
+pub fn waves(form: usize, values: &[f64]) -> impl Iterator<Item = [f64; 3]> {
+    // One pattern, and three and more, stand one after the other; of two the pitches stand behind the sizes.
+    let count = if matches!(form, 1 | 2) { 2 } else { values.len() / 3 };
+    (0..count).map(move |at| {
+        let (first, pitch) = match form {
+            1 => (2 * at, values[4] / (at + 1) as f64),
+            2 => (2 * at, values[4 + at]),
+            _ => (3 * at, values[3 * at + 2]),
+        };
+        [values[first], values[first + 1], TAU / pitch.max(f64::MIN_POSITIVE)]
+    })
 }
 
 static SPEC: EffectSpec = EffectSpec {
@@ -133,16 +136,17 @@ mod tests {
 
     #[test]
     fn the_waves_of_every_form_are_its_equation() {
-        assert_eq!(waves(0, &[1.0, 2.0, 0.5]), [[1.0, 2.0, TAU / 0.5]]);
-        assert_eq!(waves(1, &[1.0, 2.0, 3.0, 4.0, 0.5]), [[1.0, 2.0, TAU / 0.5], [3.0, 4.0, 2.0 * TAU / 0.5]]);
-        assert_eq!(waves(2, &[1.0, 2.0, 3.0, 4.0, 0.5, 0.2]), [[1.0, 2.0, TAU / 0.5], [3.0, 4.0, TAU / 0.2]]);
+        let all = |form: usize, values: &[f64]| waves(form, values).collect::<Vec<_>>();
+        assert_eq!(all(0, &[1.0, 2.0, 0.5]), [[1.0, 2.0, TAU / 0.5]]);
+        assert_eq!(all(1, &[1.0, 2.0, 3.0, 4.0, 0.5]), [[1.0, 2.0, TAU / 0.5], [3.0, 4.0, TAU / 0.25]]);
+        assert_eq!(all(2, &[1.0, 2.0, 3.0, 4.0, 0.5, 0.2]), [[1.0, 2.0, TAU / 0.5], [3.0, 4.0, TAU / 0.2]]);
         for (form, count) in [(3, 3), (4, 4), (5, 5), (6, MOST_PATTERNS)] {
             let names: Vec<&str> = SPEC.forms[form].parameters.iter().map(|parameter| parameter.name).collect();
             assert_eq!(names.len(), 3 * count, "{names:?}");
             let each = (0..count).flat_map(|at| [at as f64, -1.0, 0.1 * (at + 1) as f64]);
             let expected: Vec<[f64; 3]> =
                 (0..count).map(|at| [at as f64, -1.0, TAU / (0.1 * (at + 1) as f64)]).collect();
-            assert_eq!(waves(form, &each.collect::<Vec<f64>>()), expected);
+            assert_eq!(all(form, &each.collect::<Vec<f64>>()), expected);
             for (wave, part) in names.chunks(3).zip(["", "second_", "third_", "fourth_", "fifth_", "sixth_"]) {
                 assert_eq!(wave, ["sine", "cosine", "pitch"].map(|end| format!("{part}{end}")));
             }
