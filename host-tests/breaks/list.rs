@@ -55,7 +55,9 @@ impl Break {
             let of_tests = of_module.join("tests.rs");
             if of_tests.exists() { of_tests } else { of_module.with_extension("rs") }
         } else {
-            folder.join("tests").join(&self.target).join(module.join("/")).with_extension("rs")
+            // The modules lie in a folder of the target's name, whether one of that name holds them all or none does.
+            let within = module.strip_prefix(&[self.target.as_str()]).unwrap_or(&module);
+            folder.join("tests").join(&self.target).join(within.join("/")).with_extension("rs")
         }
     }
 

@@ -10,6 +10,7 @@
 
 pub mod candidates;
 pub mod coverage;
+pub mod departures;
 pub mod discrimination;
 pub mod explanation;
 pub mod limits;

@@ -26,7 +26,7 @@ const MAX_ITERATIONS: usize = 8;
 const LEAST_PROGRESS: f64 = 1e-3;
 
 /// Rows of a recorded reference along which alternatives are fitted.
-const MAX_ROWS: usize = 25_000;
+pub(super) const MAX_ROWS: usize = 25_000;
 
 /// What could be behind the recordings.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,7 +147,7 @@ fn ordered(misfit: f64) -> u64 {
 }
 
 /// The measures of `trials` under `rig`, from which the values of an effect are searched.
-fn excitation_stats(rig: &Rig, trials: &[Recording]) -> ExcitationStats {
+pub(super) fn excitation_stats(rig: &Rig, trials: &[Recording]) -> ExcitationStats {
     let surface = rig.surface();
     let positions = || trials.iter().flat_map(|trial| trial.position.iter().copied());
     let (low, high) = positions().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));

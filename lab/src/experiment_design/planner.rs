@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::candidates::{self, Candidate};
 use super::coverage::Coverage;
+use super::departures::{Departure, departures, information};
 use super::discrimination::{LinearizedResponse, Noise, prior, range, steps, whitened};
 use super::explanation::Explanation;
 use super::limits::Limits;
@@ -38,10 +39,17 @@ const WANTED_HALF_WIDTH: f64 = 0.1;
 const DEVIATIONS_95: f64 = 1.96;
 
 /// Share of all states in reach that a trial has to add to be worth it for that alone.
-pub const LEAST_NEW_STATES: f64 = 0.08;
+const LEAST_NEW_STATES: f64 = 0.08;
+
+/// Nats of a listed effect, the mean of all, that a trial has to tell to be worth it for that alone: those by which the recordings then tell
+/// twice as much of it, half of ln 2.
+const LEAST_INFORMATION: f64 = 0.5 * std::f64::consts::LN_2;
 
 /// Worth of all states in reach, in questions.
 const COVERAGE_WORTH: f64 = 1.5;
+
+/// Worth of a nat of every listed effect that the recordings could hide, in questions.
+const DEPARTURES_WORTH: f64 = 1.5;
 
 /// Span over which a planned speed is taken, s.
 const SPEED_SPAN_S: f64 = 0.02;
@@ -69,14 +77,21 @@ pub struct Plan {
     pub expected: Vec<f64>,
     /// Share of the states in reach that it adds.
     pub new_states: f64,
+    /// Nats that it is expected to tell of a listed effect that the answer does not hold, the mean of all.
+    pub departures: f64,
 }
 
 impl Plan {
+    /// Whether it is expected to tell anything new beside what is open.
+    #[must_use]
+    pub fn searches_on(&self) -> bool {
+        self.new_states >= LEAST_NEW_STATES || self.departures >= LEAST_INFORMATION
+    }
+
     /// Whether it is expected to tell anything.
     #[must_use]
     pub fn is_worth_running(&self) -> bool {
-        self.new_states >= LEAST_NEW_STATES
-            || self.expected.iter().any(|energy| *energy >= LEAST_SHARE * DECISIVE_ENERGY)
+        self.searches_on() || self.expected.iter().any(|energy| *energy >= LEAST_SHARE * DECISIVE_ENERGY)
     }
 }
 
@@ -96,6 +111,8 @@ pub struct Situation<'a> {
     pub closed_loop: LoopModel,
     /// Share of speed and depth at which a trial before was cut off; 1 where none was.
     pub ease: f64,
+    /// Whether effects that the recordings could hide are searched for, beside what is open.
+    pub searches: bool,
 }
 
 /// A candidate as every explanation would record it.
@@ -105,6 +122,8 @@ struct Tried {
     seconds: f64,
     /// Energy for each question.
     energy: Vec<f64>,
+    /// Energy of each departure.
+    departures: Vec<f64>,
     states: Coverage,
 }
 
@@ -113,10 +132,11 @@ struct Tried {
 pub fn plan(situation: &Situation<'_>) -> Option<Plan> {
     let room = situation.motion_limits()?;
     let known = situation.known();
+    let hidden = situation.hidden();
     let count = candidates::motions(room).len();
     let tried: Vec<Tried> =
-        (0..count).into_par_iter().filter_map(|number| situation.attempt(room, number, &known)).collect();
-    situation.compose(tried)
+        (0..count).into_par_iter().filter_map(|number| situation.attempt(room, number, &known, &hidden)).collect();
+    situation.compose(tried, &hidden)
 }
 
 impl Situation<'_> {
@@ -182,6 +202,14 @@ impl Situation<'_> {
         self.visited().map_or(self.limits.position[1] - self.limits.position[0], |(low, high)| high - low)
     }
 
+    /// The effects that the recordings could hide.
+    fn hidden(&self) -> Vec<Departure> {
+        if !self.searches || self.trials.is_empty() {
+            return Vec::new();
+        }
+        departures(self.answer(), self.trials, &self.closed_loop, &self.noise, self.travel())
+    }
+
     /// Information that the recordings hold about the values of each explanation.
     fn known(&self) -> Vec<DMatrix<f64>> {
         let reference = |trial: &Recording| {
@@ -201,14 +229,20 @@ impl Situation<'_> {
     }
 
     /// Candidate `number` as quick and deep as every explanation lets it be.
-    fn attempt(&self, room: MotionLimits, number: usize, known: &[DMatrix<f64>]) -> Option<Tried> {
+    fn attempt(
+        &self,
+        room: MotionLimits,
+        number: usize,
+        known: &[DMatrix<f64>],
+        hidden: &[Departure],
+    ) -> Option<Tried> {
         EASE.iter().find_map(|part| {
             let candidate = candidates::motions(room.eased(*part)).into_iter().nth(number)?;
             let step = self.closed_loop.rate_hz.recip();
             let reference = reference_along(&candidate.path.rows(step), self.answer(), &self.closed_loop);
             let predicted = self.predicted(&reference)?;
             let all_keep = predicted.iter().all(|recording| self.keeps(recording));
-            all_keep.then(|| self.judge(candidate, reference, &predicted, known)).flatten()
+            all_keep.then(|| self.judge(candidate, reference, &predicted, known, hidden)).flatten()
         })
     }
 
@@ -245,6 +279,7 @@ impl Situation<'_> {
         reference: Vec<f64>,
         predicted: &[Recording],
         known: &[DMatrix<f64>],
+        hidden: &[Departure],
     ) -> Option<Tried> {
         let shown: Vec<DVector<f64>> = predicted.iter().map(|recording| whitened(recording, &self.noise)).collect();
         let along = |at: usize| {
@@ -268,8 +303,14 @@ impl Situation<'_> {
                 at.map_or(0.0, |at| self.interval_energy(parameter, own_steps[at].1, *half_width, at, &own, &known[0]))
             }
         });
+        let departures = hidden.iter().map(|departure| {
+            let response = predict(&departure.rig, &self.closed_loop, &reference).ok();
+            response.map_or(0.0, |response| own.discrepancy(&whitened(&response, &self.noise), &known[0]))
+        });
+        let departures = departures.map(|energy| if energy.is_nan() { 0.0 } else { energy }).collect();
         Some(Tried {
             energy: energy.collect(),
+            departures,
             states: Coverage::of(&predicted[0], self.limits),
             seconds: candidate.path.seconds(),
             what: candidate.what,
@@ -298,7 +339,7 @@ impl Situation<'_> {
     }
 
     /// The candidates that decide most a second, one after the other until the time is up.
-    fn compose(&self, mut tried: Vec<Tried>) -> Option<Plan> {
+    fn compose(&self, mut tried: Vec<Tried>, hidden: &[Departure]) -> Option<Plan> {
         let mut visited = Coverage::of_all(self.trials, self.limits);
         let mut reach = visited.clone();
         tried.iter().for_each(|one| reach.add(&one.states));
@@ -308,11 +349,19 @@ impl Situation<'_> {
             motions: Vec::new(),
             expected: vec![0.0; self.questions.len()],
             new_states: 0.0,
+            departures: 0.0,
         };
+        let mut shown = vec![0.0; hidden.len()];
         let mut left = self.limits.duration_s;
         loop {
             tried.retain(|one| one.seconds <= left || plan.reference.is_empty());
-            let worth = |one: &Tried| self.worth(one, &plan.expected, visited.added_by(&one.states), reach.len());
+            let told = information(hidden, &shown);
+            let worth = |one: &Tried| {
+                let sum: Vec<f64> = shown.iter().zip(&one.departures).map(|(before, energy)| before + energy).collect();
+                let added = information(hidden, &sum) - told;
+                let states = visited.added_by(&one.states) as f64 / reach.len().max(1) as f64;
+                (self.decided(one, &plan.expected) + COVERAGE_WORTH * states + DEPARTURES_WORTH * added) / one.seconds
+            };
             let Some(best) = (0..tried.len()).max_by(|a, b| worth(&tried[*a]).total_cmp(&worth(&tried[*b]))) else {
                 break;
             };
@@ -323,9 +372,11 @@ impl Situation<'_> {
             plan.reference.extend(&chosen.reference);
             plan.motions.push(chosen.what.clone());
             plan.expected.iter_mut().zip(&chosen.energy).for_each(|(sum, energy)| *sum += energy);
+            shown.iter_mut().zip(&chosen.departures).for_each(|(sum, energy)| *sum += energy);
             visited.add(&chosen.states);
             left -= chosen.seconds;
         }
+        plan.departures = information(hidden, &shown);
         plan.new_states = (visited.len() - before) as f64 / reach.len().max(1) as f64;
         // One after the other they may do what none does alone: a load that drifts, a dent that deepens.
         let all_keep =
@@ -333,11 +384,9 @@ impl Situation<'_> {
         (!plan.reference.is_empty() && range(&plan.reference) > 0.0 && all_keep(&plan)).then_some(plan)
     }
 
-    /// Questions that `one` decides a second, where `expected` is what the motions before it tell.
-    fn worth(&self, one: &Tried, expected: &[f64], added: usize, reach: usize) -> f64 {
+    /// Questions that `one` decides, where `expected` is what the motions before it tell.
+    fn decided(&self, one: &Tried, expected: &[f64]) -> f64 {
         let decided = |energy: f64| (energy / DECISIVE_ENERGY).min(1.0);
-        let gain = expected.iter().zip(&one.energy).map(|(before, energy)| decided(before + energy) - decided(*before));
-        let states = COVERAGE_WORTH * added as f64 / reach.max(1) as f64;
-        (gain.sum::<f64>() + states) / one.seconds
+        expected.iter().zip(&one.energy).map(|(before, energy)| decided(before + energy) - decided(*before)).sum()
     }
 }

@@ -76,7 +76,8 @@ pub fn separating_trial(rig: &Rig, found: &Found, trials: &[Recording]) -> Optio
         return None;
     }
     let (explanations, questions) = (&explanations, &questions);
-    let situation = Situation { explanations, questions, trials, limits: &limits, noise, closed_loop, ease: 1.0 };
+    let situation =
+        Situation { explanations, questions, trials, limits: &limits, noise, closed_loop, ease: 1.0, searches: false };
     let plan = plan(&situation)?;
     let answered = words.iter().zip(&plan.expected).map(|(words, energy)| {
         let enough = if *energy >= DECISIVE_ENERGY { "it decides" } else { "too little to decide for certain" };

@@ -13,7 +13,7 @@ use super::test_bed::{Ending, TestBed, TrialOutcome, TrialRequest};
 use crate::diagnose::{Found, diagnose};
 use crate::experiment_design::discrimination::Noise;
 use crate::experiment_design::loop_model::LoopModel;
-use crate::experiment_design::planner::{LEAST_NEW_STATES, Situation};
+use crate::experiment_design::planner::Situation;
 use crate::experiment_design::{Explanation, Limits, Plan, Question, plan};
 use crate::recording::Recording;
 use crate::rig::{Coordinate, Rig};
@@ -76,7 +76,7 @@ impl Session<'_> {
             let ease = ease(investigation);
             let closed = is_confirmed(investigation, &standing);
             let plan = self.plan(&standing, &investigation.setup.limits, ease);
-            let Some(plan) = plan.filter(|plan| !closed || plan.new_states >= LEAST_NEW_STATES) else {
+            let Some(plan) = plan.filter(|plan| !closed || plan.searches_on()) else {
                 investigation.outcome = Some(if closed { Outcome::Decided } else { Outcome::NothingMore });
                 break;
             };
@@ -189,6 +189,7 @@ impl Session<'_> {
             noise: standing.noise,
             closed_loop: standing.closed_loop,
             ease,
+            searches: true,
         };
         plan(&situation).filter(Plan::is_worth_running)
     }
@@ -317,6 +318,12 @@ fn why(plan: &Plan, standing: &Standing) -> String {
     let unasked = standing.questions.len() - reasons.len();
     if plan.new_states >= 0.01 {
         reasons.push(format!("{:.0} % of the states in reach were not visited yet", 100.0 * plan.new_states));
+    }
+    if plan.departures >= 0.01 {
+        let times = (2.0 * plan.departures).exp();
+        reasons.push(format!(
+            "listed effects could still be hidden, of which the recordings will then tell {times:.1} times as much"
+        ));
     }
     let mut text = capitalized(&plan.motions.join("; then "));
     text.push_str(&format!(", because this is open: {}", reasons.join("; ")));

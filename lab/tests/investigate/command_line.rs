@@ -62,6 +62,20 @@ fn a_simulated_rig_is_investigated_resumed_and_not_mistaken_for_another() {
     assert!(String::from_utf8_lossy(&other.get_output().stderr).contains("investigation of other inputs"));
 }
 
+/// The first trial confirms that nothing is missing. Of the list it could not show all that short recordings hide, and a second looks for the rest; the answer stays.
+#[test]
+fn where_nothing_is_missing_a_second_trial_looks_for_what_the_first_could_not_show() {
+    let folder = folder();
+    palpate(folder.path()).args(["simulate", "--rig", "rig.toml", "--out", "trial.csv"]).assert().success();
+    investigate(folder.path(), "sim:rig.toml", "3").assert().success();
+    let found = record(folder.path());
+    let named = found.rounds.iter().map(|round| round.state.as_ref().unwrap().physics.len()).sum::<usize>();
+    assert_eq!((found.outcome, named), (Some(Outcome::Decided), 0));
+    assert!(found.rounds.len() > 2, "{}", found.rounds.len());
+    let why = &found.rounds[2].trial.as_ref().unwrap().why;
+    assert!(why.contains("listed effects could still be hidden"), "{why}");
+}
+
 #[test]
 fn a_command_that_gives_no_recording_ends_it_after_two_rounds_and_what_is_known_stays() {
     let folder = folder();

@@ -1,6 +1,7 @@
 //! The design of experiments, on rigs alone.
 
-use palpate_lab::experiment_design::discrimination::Noise;
+use palpate_lab::experiment_design::departures::{Departure, departures, information};
+use palpate_lab::experiment_design::discrimination::{LinearizedResponse, Noise, prior, steps, whitened};
 use palpate_lab::experiment_design::loop_model::LoopModel;
 use palpate_lab::experiment_design::planner::{DECISIVE_ENERGY, Situation};
 use palpate_lab::experiment_design::prediction::predict;
@@ -57,6 +58,7 @@ fn planned(explanations: &[&str], limits: &Limits, recorded: bool) -> (Option<Pl
         noise,
         closed_loop,
         ease: 1.0,
+        searches: false,
     };
     (plan(&situation), explanations, closed_loop)
 }
@@ -136,10 +138,48 @@ fn a_clamped_tool_starts_where_its_contact_rests() {
         noise,
         closed_loop,
         ease: 1.0,
+        searches: true,
     };
     let plan = plan(&situation).unwrap();
     assert!(plan.is_worth_running(), "{plan:?}");
     let predicted = predict(&rig, &closed_loop, &plan.reference).unwrap();
     let deepest = predicted.force.unwrap().iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     assert!(deepest <= limits.with_margin().force.unwrap(), "{deepest}");
+}
+
+/// A contact that was pressed slowly, once, and the bench alone explains it. A trial of six seconds cannot show all: the one that searches for effects of the list tells more of them,
+/// counted along its motion, than the one that goes where nothing was yet.
+#[test]
+fn where_nothing_is_open_a_trial_shows_what_the_recordings_could_hide() {
+    let rig = bench("");
+    let (slow, short) = (Limits { speed: 0.02, ..LIMITS }, Limits { duration_s: 6.0, ..LIMITS });
+    let closed_loop = LoopModel::new(&rig, &[]);
+    let answer = [Explanation { physics: Vec::new(), rig: rig.clone() }];
+    let noise = Noise { position: 3e-5, force: Some(0.09), effort: Some(0.1) };
+    let situation = |trials: &[Recording], limits: &Limits, searches: bool| {
+        let (explanations, questions) = (&answer, &[]);
+        plan(&Situation { explanations, questions, trials, limits, noise, closed_loop, ease: 1.0, searches }).unwrap()
+    };
+    let first = situation(&[], &slow, false);
+    let trials = [predict(&rig, &closed_loop, &first.reference).unwrap()];
+    let [found, blind] = [true, false].map(|searches| situation(&trials, &short, searches));
+    assert!(found.searches_on(), "{found:?}");
+    assert_eq!(blind.departures, 0.0);
+    let travel = 0.02;
+    let hidden = departures(&rig, &trials, &closed_loop, &noise, travel);
+    let steps = steps(&rig, travel);
+    let told = |plan: &Plan| {
+        let along = |rig: &Rig| predict(rig, &closed_loop, &plan.reference).unwrap();
+        let own = LinearizedResponse::new(&rig, &steps, &closed_loop, &plan.reference, &noise).unwrap();
+        let energy = |hidden: &Departure| own.discrepancy(&whitened(&along(&hidden.rig), &noise), &prior(steps.len()));
+        information(&hidden, &hidden.iter().map(energy).collect::<Vec<f64>>())
+    };
+    assert!(
+        told(&found) > 1.05 * told(&blind),
+        "{} {}: {:?} {:?}",
+        told(&found),
+        told(&blind),
+        found.motions,
+        blind.motions
+    );
 }
