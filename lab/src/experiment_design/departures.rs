@@ -25,7 +25,7 @@ use crate::effects::{self, to_table};
 use crate::recording::Recording;
 use crate::rig::Rig;
 
-/// Places of the search of one effect that are tried, an even sample of them.
+/// Places of the search of one effect that are tried, an even sample of them; for the time that it takes.
 const MOST_TRIED: usize = 4;
 
 /// Of those, places at which it is a departure: where the recordings would have shown the least of it.
