@@ -308,10 +308,9 @@ impl Situation<'_> {
             let response = predict(&departure.rig, &self.closed_loop, &reference).ok();
             response.map_or(0.0, |response| own.discrepancy(&whitened(&response, &self.noise), &known[0]))
         });
-        let departures = departures.map(|energy| if energy.is_nan() { 0.0 } else { energy }).collect();
         Some(Tried {
             energy: energy.collect(),
-            departures,
+            departures: departures.collect(),
             states: Coverage::of(&predicted[0], self.limits),
             seconds: candidate.path.seconds(),
             what: candidate.what,
