@@ -14,13 +14,10 @@
 //! (D. V. Lindley, "On a measure of the information provided by an experiment", Annals of Mathematical Statistics 27 (1956) 986, for a
 //! normal size of that scale).
 
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::discrimination::{LinearizedResponse, Noise, prior, steps, whitened};
-use super::explanation::{MAX_ROWS, excitation_stats};
-use super::loop_model::LoopModel;
-use super::prediction::predict;
+use super::explanation::excitation_stats;
+use super::recorded::Recorded;
 use crate::effects::{self, to_table};
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -42,16 +39,10 @@ pub struct Departure {
     pub shown: f64,
 }
 
-/// Every effect of the list that `answer` does not hold, beside it, and what `trials` would have shown of it. Effects that repeat along
-/// time or way are searched by their spectrum and have no place to start from: they are left out.
+/// Every effect of the list that `answer` does not hold, beside it, and what `trials` would have shown of it, of which `recorded` is the
+/// answer's part. Effects that repeat along time or way are searched by their spectrum and have no place to start from: they are left out.
 #[must_use]
-pub fn departures(
-    answer: &Rig,
-    trials: &[Recording],
-    closed_loop: &LoopModel,
-    noise: &Noise,
-    travel: f64,
-) -> Vec<Departure> {
+pub fn departures(answer: &Rig, trials: &[Recording], recorded: &Recorded<'_>) -> Vec<Departure> {
     let stats = excitation_stats(answer, trials);
     let missing =
         effects::ALL.iter().filter(|effect| answer.effects.iter().all(|table| table.name != effect.spec().name));
@@ -68,8 +59,7 @@ pub fn departures(
             starts.iter().step_by(every).map(|start| (number, with(&start.values))).collect::<Vec<_>>()
         })
         .collect();
-    let recorded = Recorded::new(answer, trials, closed_loop, noise, travel);
-    let shown: Vec<f64> = rigs.par_iter().map(|(_, rig)| recorded.energy(rig, closed_loop, noise)).collect();
+    let shown: Vec<f64> = rigs.par_iter().map(|(_, rig)| recorded.energy(rig)).collect();
     let all = rigs.into_iter().zip(shown).map(|((effect, rig), shown)| Departure { effect, rig, shown });
     let mut all: Vec<Departure> = all.filter(|departure| departure.shown.is_finite()).collect();
     all.sort_by(|a, b| a.effect.cmp(&b.effect).then(a.shown.total_cmp(&b.shown)));
@@ -96,52 +86,10 @@ pub fn information(departures: &[Departure], energy: &[f64]) -> f64 {
     most.iter().sum::<f64>() / count.max(1) as f64
 }
 
-/// The answer along every recorded reference.
-struct Recorded<'a> {
-    references: Vec<&'a [f64]>,
-    responses: Vec<LinearizedResponse>,
-    information: DMatrix<f64>,
-}
-
-impl<'a> Recorded<'a> {
-    fn new(answer: &Rig, trials: &'a [Recording], closed_loop: &LoopModel, noise: &Noise, travel: f64) -> Self {
-        let steps = steps(answer, travel);
-        let references: Vec<&[f64]> = trials
-            .iter()
-            .filter_map(|trial| trial.reference.as_ref())
-            .map(|reference| &reference[..reference.len().min(MAX_ROWS)])
-            .collect();
-        let along = |reference: &&'a [f64]| {
-            let response = LinearizedResponse::new(answer, &steps, closed_loop, reference, noise).ok()?;
-            Some((*reference, response))
-        };
-        let (references, responses): (Vec<_>, Vec<_>) = references.par_iter().filter_map(along).unzip();
-        let information = responses.iter().fold(prior(steps.len()), |sum, response| sum + response.information());
-        Self { references, responses, information }
-    }
-
-    /// Energy of the difference to `rig` along all of them, after the best change of the answer's values; infinite where it cannot be
-    /// simulated.
-    fn energy(&self, rig: &Rig, closed_loop: &LoopModel, noise: &Noise) -> f64 {
-        let (mut own, mut gradient) = (0.0, DVector::zeros(self.information.ncols()));
-        for (reference, here) in self.references.iter().zip(&self.responses) {
-            let Ok(shown) = predict(rig, closed_loop, reference) else { return f64::INFINITY };
-            let response = whitened(&shown, noise);
-            if response.len() != here.response.len() {
-                return f64::INFINITY;
-            }
-            let difference = response - &here.response;
-            own += difference.norm_squared();
-            gradient += here.sensitivity.tr_mul(&difference);
-        }
-        let Some(solver) = self.information.clone().cholesky() else { return f64::INFINITY };
-        let left = own - gradient.dot(&solver.solve(&gradient));
-        if left.is_nan() { f64::INFINITY } else { left.max(0.0) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::discrimination::Noise;
+    use super::super::loop_model::LoopModel;
     use super::*;
     use crate::simulate::simulate;
 
@@ -172,7 +120,8 @@ mod tests {
         let rig = bench();
         let trial = simulate(&rig, 1, "bench").unwrap().recording;
         let closed_loop = LoopModel::new(&rig, std::slice::from_ref(&trial));
-        let of = |trials: &[Recording]| departures(&rig, trials, &closed_loop, &NOISE, 0.02);
+        let of =
+            |trials: &[Recording]| departures(&rig, trials, &Recorded::new(&rig, trials, &closed_loop, &NOISE, 0.02));
         let (once, twice) = (of(std::slice::from_ref(&trial)), of(&[trial.clone(), trial.clone()]));
         assert_eq!(once.len(), twice.len());
         assert!(effects_of(&once) > 20, "{}", effects_of(&once));
@@ -191,7 +140,9 @@ mod tests {
         rig.effects.push(to_table(friction, 0, rig.coordinate, &[0.3], None));
         let trial = simulate(&rig, 1, "bench").unwrap().recording;
         let closed_loop = LoopModel::new(&rig, std::slice::from_ref(&trial));
-        for departure in departures(&rig, &[trial], &closed_loop, &NOISE, 0.02) {
+        let trials = [trial];
+        let recorded = Recorded::new(&rig, &trials, &closed_loop, &NOISE, 0.02);
+        for departure in departures(&rig, &trials, &recorded) {
             let [known, added] = departure.rig.effects.as_slice() else { panic!("{:?}", departure.rig.effects) };
             assert_eq!(known.name, "coulomb_friction");
             assert_ne!(added.name, "coulomb_friction");

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::discrimination::{LinearizedResponse, Noise, prior, range, steps, whitened};
 use super::loop_model::LoopModel;
 use super::prediction::predict;
+use super::recorded::MAX_RECORDED_ROWS;
 use crate::effects::{self, Effect, ExcitationStats, to_table};
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -24,9 +25,6 @@ const MAX_ITERATIONS: usize = 8;
 
 /// Share of the misfit that a step has to take for the search to go on.
 const LEAST_PROGRESS: f64 = 1e-3;
-
-/// Rows of a recorded reference along which alternatives are fitted.
-pub(super) const MAX_ROWS: usize = 25_000;
 
 /// What could be behind the recordings.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +47,7 @@ pub fn explanations(
     noise: &Noise,
 ) -> Vec<Explanation> {
     let reference = trials.iter().filter_map(|trial| trial.reference.as_ref()).max_by_key(|reference| reference.len());
-    let Some(reference) = reference.map(|reference| &reference[..reference.len().min(MAX_ROWS)]) else {
+    let Some(reference) = reference.map(|reference| &reference[..reference.len().min(MAX_RECORDED_ROWS)]) else {
         return vec![answer];
     };
     let Ok(shown) = predict(&answer.rig, closed_loop, reference) else { return vec![answer] };

@@ -6,13 +6,14 @@ use rayon::prelude::*;
 use super::candidates::{self, Candidate};
 use super::coverage::Coverage;
 use super::departures::{Departure, departures, information};
-use super::discrimination::{LinearizedResponse, Noise, prior, range, steps, whitened};
+use super::discrimination::{LinearizedResponse, Noise, range, steps, whitened};
 use super::explanation::Explanation;
 use super::limits::Limits;
 use super::loop_model::LoopModel;
 use super::parameters::Parameter;
 use super::path::MotionLimits;
 use super::prediction::predict;
+use super::recorded::Recorded;
 use super::reference::reference_along;
 use crate::recording::Recording;
 use crate::rig::Rig;
@@ -54,9 +55,6 @@ const DEPARTURES_WORTH: f64 = 1.5;
 
 /// Span over which a planned speed is taken, s.
 const SPEED_SPAN_S: f64 = 0.02;
-
-/// Longest recorded reference along which the information that the recordings hold is counted, rows.
-const MAX_RECORDED_ROWS: usize = 30_000;
 
 /// What recordings leave open.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,8 +130,9 @@ struct Tried {
 #[must_use]
 pub fn plan(situation: &Situation<'_>) -> Option<Plan> {
     let room = situation.motion_limits()?;
-    let known = situation.known();
-    let hidden = situation.hidden();
+    let recorded = situation.recorded();
+    let known: Vec<DMatrix<f64>> = recorded.iter().map(|one| one.information().clone()).collect();
+    let hidden = situation.hidden(&recorded[0]);
     let count = candidates::motions(room).len();
     let tried: Vec<Tried> =
         (0..count).into_par_iter().filter_map(|number| situation.attempt(room, number, &known, &hidden)).collect();
@@ -203,30 +202,20 @@ impl Situation<'_> {
         self.visited().map_or(self.limits.position[1] - self.limits.position[0], |(low, high)| high - low)
     }
 
-    /// The effects that the recordings could hide.
-    fn hidden(&self) -> Vec<Departure> {
+    /// Each explanation along what was recorded.
+    fn recorded(&self) -> Vec<Recorded<'_>> {
+        let along = |explanation: &Explanation| {
+            Recorded::new(&explanation.rig, self.trials, &self.closed_loop, &self.noise, self.travel())
+        };
+        self.explanations.par_iter().map(along).collect()
+    }
+
+    /// The effects that the recordings could hide, of which `recorded` is the answer's part.
+    fn hidden(&self, recorded: &Recorded<'_>) -> Vec<Departure> {
         if !self.searches || self.trials.is_empty() {
             return Vec::new();
         }
-        departures(self.answer(), self.trials, &self.closed_loop, &self.noise, self.travel())
-    }
-
-    /// Information that the recordings hold about the values of each explanation.
-    fn known(&self) -> Vec<DMatrix<f64>> {
-        let reference = |trial: &Recording| {
-            let reference = trial.reference.as_ref()?;
-            Some(reference[..reference.len().min(MAX_RECORDED_ROWS)].to_vec())
-        };
-        let references: Vec<Vec<f64>> = self.trials.iter().filter_map(reference).collect();
-        let of = |explanation: &Explanation| {
-            let steps = steps(&explanation.rig, self.travel());
-            references.iter().fold(prior(steps.len()), |sum, reference| {
-                let along =
-                    LinearizedResponse::new(&explanation.rig, &steps, &self.closed_loop, reference, &self.noise);
-                along.map_or_else(|_| sum.clone(), |response| &sum + response.information())
-            })
-        };
-        self.explanations.par_iter().map(of).collect()
+        departures(self.answer(), self.trials, recorded)
     }
 
     /// Candidate `number` as quick and deep as every explanation lets it be.

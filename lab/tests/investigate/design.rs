@@ -5,6 +5,7 @@ use palpate_lab::experiment_design::discrimination::{LinearizedResponse, Noise, 
 use palpate_lab::experiment_design::loop_model::LoopModel;
 use palpate_lab::experiment_design::planner::{DECISIVE_ENERGY, Situation};
 use palpate_lab::experiment_design::prediction::predict;
+use palpate_lab::experiment_design::recorded::Recorded;
 use palpate_lab::experiment_design::{Explanation, Limits, Plan, Question, plan};
 use palpate_lab::recording::Recording;
 use palpate_lab::rig::Rig;
@@ -166,7 +167,7 @@ fn where_nothing_is_open_a_trial_shows_what_the_recordings_could_hide() {
     assert!(found.searches_on(), "{found:?}");
     assert_eq!(blind.departures, 0.0);
     let travel = 0.02;
-    let hidden = departures(&rig, &trials, &closed_loop, &noise, travel);
+    let hidden = departures(&rig, &trials, &Recorded::new(&rig, &trials, &closed_loop, &noise, travel));
     let steps = steps(&rig, travel);
     let told = |plan: &Plan| {
         let along = |rig: &Rig| predict(rig, &closed_loop, &plan.reference).unwrap();
