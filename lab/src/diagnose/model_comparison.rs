@@ -9,11 +9,10 @@ pub fn likelihood_ratio_p(gain: f64, values: usize) -> f64 {
     ChiSquared::new(values.max(1) as f64).map_or(1.0, |chi| chi.sf(2.0 * gain.max(0.0)))
 }
 
-/// Vuong's statistic: the mean difference of two models' log likelihoods over its deviation, rows taken together in blocks of `block`
-/// (Q. H. Vuong, *Econometrica* 57, 1989); zero where there are fewer than two blocks.
+/// Vuong's statistic: the mean difference of two models' log likelihoods over its deviation, `blocks` of rows taken together
+/// (Q. H. Vuong, *Econometrica* 57, 1989); zero where there are fewer than two.
 #[must_use]
-pub fn vuong(more: &[f64], less: &[f64], block: usize) -> f64 {
-    let blocks = block_gains(more, less, block);
+pub fn vuong(blocks: &[f64]) -> f64 {
     let count = blocks.len() as f64;
     if count < 2.0 {
         return 0.0;
@@ -26,8 +25,7 @@ pub fn vuong(more: &[f64], less: &[f64], block: usize) -> f64 {
 /// Clarke's statistic, of the same differences: by how many deviations more blocks than half speak for the first (K. A. Clarke, *Political
 /// Analysis* 15, 2007). It asks the same as Vuong's and does not fail where a few blocks, gains or losses, outweigh all others.
 #[must_use]
-pub fn clarke(more: &[f64], less: &[f64], block: usize) -> f64 {
-    let blocks = block_gains(more, less, block);
+pub fn clarke(blocks: &[f64]) -> f64 {
     let count = blocks.len() as f64;
     if count < 2.0 {
         return 0.0;
@@ -36,7 +34,9 @@ pub fn clarke(more: &[f64], less: &[f64], block: usize) -> f64 {
     (2.0 * gains - count) / count.sqrt()
 }
 
-fn block_gains(more: &[f64], less: &[f64], block: usize) -> Vec<f64> {
+/// What `more` has over `less`, log likelihoods row by row, in each whole block of `block` rows.
+#[must_use]
+pub fn block_gains(more: &[f64], less: &[f64], block: usize) -> Vec<f64> {
     let blocks = more.chunks_exact(block).zip(less.chunks_exact(block));
     blocks.map(|(more, less)| more.iter().zip(less).map(|(more, less)| more - less).sum()).collect()
 }
@@ -50,13 +50,13 @@ mod tests {
         let less = vec![0.0; 400];
         let mut more = vec![0.5; 400];
         more[50..60].fill(-30.0);
-        assert!(vuong(&more, &less, 20) < 1.0);
+        assert!(vuong(&block_gains(&more, &less, 20)) < 1.0);
         // 19 of 20 blocks gain: 18 over the root of 20.
-        assert!((clarke(&more, &less, 20) - 18.0 / 20.0f64.sqrt()).abs() < 1e-12);
+        assert!((clarke(&block_gains(&more, &less, 20)) - 18.0 / 20.0f64.sqrt()).abs() < 1e-12);
         let mut once = less.clone();
         once[50..60].fill(30.0);
-        assert!(clarke(&once, &less, 20) < 0.0);
-        assert_eq!(clarke(&more[..30], &less[..30], 20), 0.0);
+        assert!(clarke(&block_gains(&once, &less, 20)) < 0.0);
+        assert_eq!(clarke(&block_gains(&more[..30], &less[..30], 20)), 0.0);
     }
 
     #[test]
@@ -64,9 +64,9 @@ mod tests {
         let less = vec![0.0; 400];
         let mut once = less.clone();
         once[50..60].fill(30.0);
-        assert!(vuong(&once, &less, 20) < 1.1);
+        assert!(vuong(&block_gains(&once, &less, 20)) < 1.1);
         let throughout: Vec<f64> = (0..400).map(|row| 0.7 + 0.1 * f64::from(row % 3)).collect();
-        assert!(vuong(&throughout, &less, 20) > 30.0);
-        assert_eq!(vuong(&once[..30], &less[..30], 20), 0.0);
+        assert!(vuong(&block_gains(&throughout, &less, 20)) > 30.0);
+        assert_eq!(vuong(&block_gains(&once[..30], &less[..30], 20)), 0.0);
     }
 }

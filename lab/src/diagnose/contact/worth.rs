@@ -9,7 +9,7 @@ use super::fit::Fit;
 use super::rest::Rest;
 use super::search::Search;
 use crate::diagnose::evidence::share_beyond_noise;
-use crate::diagnose::model_comparison::vuong;
+use crate::diagnose::model_comparison::{block_gains, vuong};
 
 /// What a larger model has over a smaller one.
 #[derive(Debug, Clone, Copy)]
@@ -50,7 +50,7 @@ impl Search<'_> {
             share: taken.max(0.0) / above(less.energy).max(taken.max(f64::MIN_POSITIVE)),
             part_of_all: (taken.max(0.0) / above(self.nominal.energy).max(taken.max(f64::MIN_POSITIVE))).sqrt(),
             part_of_force: self.part_of_force(taken),
-            vuong: vuong(&logs(&rest.rows), &logs(&before.rows), block),
+            vuong: vuong(&block_gains(&logs(&rest.rows), &logs(&before.rows), block)),
             left: rest.over_sensors,
             left_before: before.over_sensors.max(left_where_they_differ(
                 &before.rows,

@@ -1,7 +1,7 @@
 //! The law that a rig file states of its drive, and its refitted values.
 
 use super::candidates::building_up;
-use super::criteria::{LATEST_ROWS, LATEST_S, LOWEST_BAND_HZ};
+use super::criteria::{LATEST_ROWS, LATEST_S, LOWEST_BAND_HZ, MOST_LIMITED_TIME};
 use super::fit::{Effort, Fit, fit};
 use super::held_out::{missing_forces, rms};
 use super::law::Side;
@@ -79,6 +79,7 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
     moves.then(|| Scales {
         effort,
         peak_effort: largest(&|trial| trial.effort.iter().fold(0.0, |peak: f64, effort| peak.max(effort.abs()))),
+        usual_effort: usual_effort(trials).min(stated_limit(rig)),
         speed,
         travel,
         lowest,
@@ -92,6 +93,20 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
         is_rotary: rig.is_rotary,
         touches: trials.iter().all(|trial| trial.force.is_some()),
     })
+}
+
+/// Size of effort that is passed for [`MOST_LIMITED_TIME`].
+fn usual_effort(trials: &[DriveTrial]) -> f64 {
+    let mut sizes: Vec<f64> = trials.iter().flat_map(|trial| &trial.effort).map(|effort| effort.abs()).collect();
+    sizes.sort_unstable_by(f64::total_cmp);
+    let at = ((1.0 - MOST_LIMITED_TIME) * sizes.len() as f64).value() as usize;
+    sizes.get(at).or(sizes.last()).copied().unwrap_or(0.0)
+}
+
+/// Limit of the effort that the rig file states; infinite where it states none.
+fn stated_limit(rig: &NominalDrive) -> f64 {
+    let limits = rig.effects.iter().filter(|effect| effect.effect.spec().name == "effort_saturation");
+    limits.map(|effect| effect.values[0]).fold(f64::INFINITY, f64::min)
 }
 
 /// Greatest mean speed over some rows.
@@ -167,4 +182,27 @@ pub fn nominal_fit(data: &Data<'_>, rig: &NominalDrive, scales: Scales, encoder_
     let best = fits.into_iter().max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
     let best = if best.model.terms.iter().any(Term::is_friction) { building_up(data, best) } else { best };
     best.log_likelihood.is_finite().then_some(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{TestDrive, nominal};
+    use super::*;
+    use crate::effects::find;
+
+    /// Efforts of 0.01 to 4 N, of whatever sign: a quarter of them passes 3 N. A limit that the rig file states is one however often it is passed.
+    #[test]
+    fn what_a_quarter_of_the_efforts_pass_bounds_a_limit_that_is_looked_for() {
+        let mut trial = TestDrive::PLAIN.trial(0.4, 1);
+        let rows = trial.effort.len();
+        trial.effort = (0..rows).map(|row| (row % 400 + 1) as f64 * if row % 2 == 0 { 0.01 } else { -0.01 }).collect();
+        let found = |rig: &NominalDrive| scales(std::slice::from_ref(&trial), rig).expect("it moves").usual_effort;
+        let rig = nominal(0.8, 4.0);
+        // A row more or less: 0.01 N.
+        assert!((found(&rig) - 3.0).abs() < 0.015, "{}", found(&rig));
+        let effect = find("effort_saturation").expect("an effect of the list");
+        let stated = |limit: f64| vec![Resolved { effect, form: 0, values: vec![limit] }];
+        assert_eq!(found(&NominalDrive { effects: stated(1.5), ..rig.clone() }), 1.5);
+        assert!(found(&NominalDrive { effects: stated(5.0), ..rig }) > 2.9);
+    }
 }

@@ -191,6 +191,7 @@ mod tests {
     const SCALES: Scales = Scales {
         effort: 1.0,
         peak_effort: 5.0,
+        usual_effort: 1.3,
         speed: 0.1,
         travel: 0.06,
         lowest: -0.03,

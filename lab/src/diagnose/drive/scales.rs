@@ -7,6 +7,9 @@ pub struct Scales {
     pub effort: f64,
     /// Greatest effort, N or N m.
     pub peak_effort: f64,
+    /// Size of effort that is passed for [`MOST_LIMITED_TIME`](super::criteria::MOST_LIMITED_TIME), and no more than a limit of it that the rig file
+    /// states, N or N m.
+    pub usual_effort: f64,
     /// Greatest speed over some rows, m/s or rad/s.
     pub speed: f64,
     /// From the least to the greatest position, m or rad.

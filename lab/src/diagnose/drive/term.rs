@@ -92,6 +92,11 @@ const WORST_LOAD: f64 = 3.0;
 /// Where the wavenumbers stand among the values of ripples.
 const PITCHES: [usize; MOST_PATTERNS] = [2, 5, 8, 11, 14, 17];
 
+/// Lowest limit of an effort: what is passed most of the time is no limit, and under a limit below the friction nothing would move.
+fn lowest_limit(scales: &Scales) -> f64 {
+    scales.usual_effort.max(0.2 * scales.effort)
+}
+
 impl Term {
     /// Name of the effect, as the contract has it.
     #[must_use]
@@ -185,10 +190,10 @@ impl Term {
             }
             Self::Ripples(count) => Self::Cogging.ranges(scales).repeat(*count),
             Self::EffortLimit => {
-                vec![Range::absolute(0.2 * scales.effort, scales.peak_effort, 0.02 * scales.effort)]
+                vec![Range::absolute(lowest_limit(scales), scales.peak_effort, 0.02 * scales.effort)]
             }
             Self::SmoothLimit => {
-                vec![Range::relative(0.2 * scales.effort, (GENTLEST_LIMIT * scales.peak_effort).value())]
+                vec![Range::relative(lowest_limit(scales), (GENTLEST_LIMIT * scales.peak_effort).value())]
             }
             Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
             Self::Compliance(side) => {
@@ -239,6 +244,7 @@ impl Term {
         match self {
             Self::Coulomb
             | Self::EffortLag
+            | Self::EffortLimit
             | Self::SmoothLimit
             | Self::LoadFriction
             | Self::ForceGain
@@ -351,6 +357,16 @@ mod tests {
         assert!(!Term::Stribeck.is_at_end(&[0.5 * excess, excess, speed], &SCALES));
         // Without an excess it is Coulomb friction.
         assert!(Term::Stribeck.is_at_end(&[excess, 0.0, speed], &SCALES));
+    }
+
+    /// Where the effort passes it for more than a quarter of the time, or gentler than a third of it tells, it is no limit.
+    #[test]
+    fn what_the_effort_usually_passes_is_no_limit() {
+        for limit in [Term::EffortLimit, Term::SmoothLimit] {
+            let is_at_end = |value: f64| limit.is_at_end(&[value], &SCALES);
+            assert!(is_at_end(SCALES.usual_effort) && !is_at_end(1.1 * SCALES.usual_effort));
+            assert!(!is_at_end(0.9 * SCALES.peak_effort) && is_at_end(3.0 * SCALES.peak_effort));
+        }
     }
 
     /// An excess whose level where it moves may be none is an encoder that stands still.

@@ -31,6 +31,7 @@ pub fn nominal(inertia: f64, viscous: f64) -> NominalDrive {
 pub const SCALES: Scales = Scales {
     effort: 2.0,
     peak_effort: 5.0,
+    usual_effort: 2.3,
     speed: 0.2,
     travel: 0.05,
     lowest: -0.025,

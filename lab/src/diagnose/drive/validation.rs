@@ -5,12 +5,17 @@ use super::criteria::{COMPARISONS, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_HELD_
 use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
 use super::interval::{Uncertainty, intervals};
+use super::levenberg_marquardt::search_values;
+use super::likelihood::Data;
 use super::noise::Noise;
 use super::selection::Search;
 use super::term::Term;
 use super::worth::share_taken;
 use crate::diagnose::evidence::NamedTerm;
 use crate::diagnose::model_comparison::likelihood_ratio_p;
+
+/// Steps of the search of a smaller law's values by the larger one's noise, from the likeliest by its own.
+const STEPS: usize = 5;
 
 /// A fit of which every term stands.
 pub struct Validated {
@@ -56,8 +61,12 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
             continue;
         }
         let uncertainty = intervals(&search.data, &fit);
-        let comparisons: Vec<RobustRatio> =
-            without.iter().zip(&told).map(|((less, _), at)| RobustRatio::of(&fit, less, *at, &uncertainty)).collect();
+        let gain = |less: &Fit| fit.log_likelihood - likelihood_by_noise_of(&search.data, less, &fit);
+        let comparisons: Vec<RobustRatio> = without
+            .iter()
+            .zip(&told)
+            .map(|((less, _), at)| RobustRatio::of(&fit, less, gain(less), *at, &uncertainty))
+            .collect();
         let is_undetermined =
             |at: usize| fit.model.terms[at].is_undetermined(&uncertainty.ends[fit.model.values_of(at)], &search.scales);
         let weakest = (0..told.len())
@@ -85,6 +94,15 @@ fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
     search.lessened(fit, model, values)
 }
 
+/// Log likelihood of `less`, its values refitted, by the noise of `more`, nats: the dispersion of a quasi-likelihood is the larger law's (R. W. M.
+/// Wedderburn, *Biometrika* 61, 1974, 439; P. McCullagh, *Ann. Stat.* 11, 1983, 59). With noise of its own a law that leaves a hundred times
+/// as much is less likely by the logarithm of that alone, however many rows say so.
+fn likelihood_by_noise_of(data: &Data<'_>, less: &Fit, more: &Fit) -> f64 {
+    let mut values = less.values.clone();
+    search_values(data, &less.model, &mut values, &more.noise, STEPS);
+    data.log_likelihood(&less.model, &values, &more.noise).0.min(less.log_likelihood)
+}
+
 /// Likelihood ratio of a fit with a term and one without it, where innovations remember: its distribution under the smaller law is that of a
 /// weighted sum of chi-squares, whose weights are the eigenvalues of the values' covariance over that by the curvature, and divided by their
 /// mean it is compared with a chi-square as usual (A. Rotnitzky, N. P. Jewell, *Biometrika* 77, 1990, 485). Of the weights the diagonal is taken.
@@ -96,12 +114,12 @@ struct RobustRatio {
 }
 
 impl RobustRatio {
-    /// That of `more`, with term `at`, and `less` without it.
-    fn of(more: &Fit, less: &Fit, at: usize, uncertainty: &Uncertainty) -> Self {
+    /// That of `more`, with term `at`, and `less` without it, over which it gains `gain` nats.
+    fn of(more: &Fit, less: &Fit, gain: f64, at: usize, uncertainty: &Uncertainty) -> Self {
         let own = &uncertainty.inflations[more.model.values_of(at)];
         let mean = own.iter().sum::<f64>() / own.len().max(1) as f64;
         let values = more.values.len().saturating_sub(less.values.len());
-        Self { gain: (more.log_likelihood - less.log_likelihood) / mean, values }
+        Self { gain: gain / mean, values }
     }
 
     /// Whether it asks for the term.
@@ -119,8 +137,27 @@ mod tests {
     use super::super::levenberg_marquardt::Ended;
     use super::super::model::Model;
     use super::super::term::Term;
-    use super::super::testing::SCALES;
+    use super::super::testing::{SCALES, TestDrive, search_over, with_dry_friction};
     use super::*;
+
+    /// Dry friction of 0.4 N leaves a law without it so much that by its own noise it is less likely by the logarithm of that alone; by the noise of
+    /// the larger law by all that it leaves. Friction that is not there is worth the same by both.
+    #[test]
+    fn a_law_that_leaves_far_more_is_judged_by_the_noise_of_the_one_that_does_not() {
+        let gains = |coulomb: f64| {
+            let drive = TestDrive { coulomb, ..TestDrive::PLAIN };
+            let trials = [drive.trial(6.0, 6)];
+            let search = search_over(&trials, &drive);
+            let rubs = with_dry_friction(&search);
+            let own = rubs.log_likelihood - search.nominal.log_likelihood;
+            (own, rubs.log_likelihood - likelihood_by_noise_of(&search.data, &search.nominal, &rubs))
+        };
+        let (own, by_noise) = gains(0.4);
+        assert!(own > 100.0 && by_noise > 10.0 * own, "{own} {by_noise}");
+        // Of nothing the maxima of both likelihoods differ by less than a nat.
+        let (own, by_noise) = gains(0.0);
+        assert!((by_noise - own).abs() < 1.0, "{own} {by_noise}");
+    }
 
     /// Forty nats for one value, where twenty rows say the same and where each says its own: two nats are chance.
     #[test]
@@ -136,7 +173,13 @@ mod tests {
         let more = fit(vec![Term::Coulomb], vec![0.8, 4.0, 0.0, 0.0, 0.1], 140.0);
         let ratio = |inflation: f64| {
             let inflations = vec![1.0, 1.0, 1.0, 1.0, inflation];
-            RobustRatio::of(&more, &less, 0, &Uncertainty { ends: Vec::new(), covariance: Vec::new(), inflations })
+            RobustRatio::of(
+                &more,
+                &less,
+                40.0,
+                0,
+                &Uncertainty { ends: Vec::new(), covariance: Vec::new(), inflations },
+            )
         };
         assert!(ratio(1.0).is_decisive() && ratio(1.0).p_value() < 1e-15);
         assert!(!ratio(20.0).is_decisive());

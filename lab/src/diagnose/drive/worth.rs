@@ -7,8 +7,9 @@ use super::criteria::{
 };
 use super::fit::Fit;
 use super::selection::Search;
+use super::trial::DriveTrial;
 use crate::diagnose::evidence::share_beyond_noise;
-use crate::diagnose::model_comparison::{clarke, vuong};
+use crate::diagnose::model_comparison::{block_gains, clarke, vuong};
 
 /// What a larger model has over a smaller one.
 #[derive(Debug, Clone, Copy)]
@@ -46,14 +47,26 @@ impl Search<'_> {
         let power = |fit: &Fit| self.unexplained(fit).powi(2);
         let taken = (power(less) - power(more)).max(0.0);
         let all = self.unexplained(&self.nominal).min(self.scales.effort);
-        let block = ((BLOCK_S / self.scales.period_s).value() as usize).max(BLOCK_ROWS);
-        let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
+        let blocks = self.block_gains(more, less);
         Worth {
             share: share_taken(power(less), power(more), 2.0 * self.effort_noise_density * self.band_hz),
             taken: taken.sqrt(),
             part_of_all: taken.sqrt() / all.max(f64::MIN_POSITIVE),
-            throughout: vuong(&rows[0], &rows[1], block).max(clarke(&rows[0], &rows[1], block)),
+            throughout: vuong(&blocks).max(clarke(&blocks)),
         }
+    }
+
+    /// What `more` has over `less` in each block of a trial, by the trial's own rate; a trial that is shorter is one block.
+    fn block_gains(&self, more: &Fit, less: &Fit) -> Vec<f64> {
+        let rows = [more, less].map(|fit| fit.row_log_likelihoods(&self.data));
+        let mut from = 0;
+        let of_trial = |(trial, count): (&DriveTrial, usize)| {
+            let block = ((BLOCK_S / trial.period_s).value() as usize).max(BLOCK_ROWS).min(count);
+            let own = from..from + count;
+            from += count;
+            block_gains(&rows[0][own.clone()], &rows[1][own], block.max(1))
+        };
+        self.data.trials.iter().zip(self.data.scored_rows()).flat_map(of_trial).collect()
     }
 
     /// Whether `more` is worth its terms.
@@ -96,7 +109,7 @@ pub fn share_taken(left: f64, held: f64, noise: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::term::Term;
-    use super::super::testing::{TestDrive, search_over};
+    use super::super::testing::{TestDrive, search_over, with_dry_friction};
     use super::*;
 
     #[test]
@@ -111,6 +124,26 @@ mod tests {
         assert!(
             is_told(0.3, 0.15, false, false) && !is_told(0.3, 0.15, true, false) && !is_told(0.2, 0.9, false, true)
         );
+    }
+
+    /// A trial of 0.4 s at 1 kHz and one at an eighth of that: one block, and one for each half second; and no block holds rows of both.
+    #[test]
+    fn each_trial_is_cut_into_blocks_by_its_own_rate() {
+        let drive = TestDrive { coulomb: 0.4, ..TestDrive::PLAIN };
+        let slow = drive.trial(8.0, 7);
+        let every = |values: &[f64]| values.iter().step_by(8).copied().collect::<Vec<f64>>();
+        let slow =
+            DriveTrial::new("slow".into(), every(&slow.time), &every(&slow.position), every(&slow.effort), None, 1);
+        let trials = [drive.trial(0.4, 6), slow];
+        let search = search_over(&trials, &drive);
+        let rubs = with_dry_friction(&search);
+        let gains = search.block_gains(&rubs, &search.nominal);
+        // Rows from which a filter settles are not scored: less than a block.
+        assert!((15..=17).contains(&gains.len()), "{}", gains.len());
+        let scored: Vec<usize> = search.data.scored_rows().collect();
+        let rows = [&rubs, &search.nominal].map(|fit| fit.row_log_likelihoods(&search.data));
+        let first: f64 = rows[0][..scored[0]].iter().zip(&rows[1][..scored[0]]).map(|(more, less)| more - less).sum();
+        assert!((gains[0] - first).abs() < 1e-9 * first.abs(), "{} {first}", gains[0]);
     }
 
     /// Dry friction of 60 mN and of 3 mN: unexplained they are 9 mN and 0.8 mN over 20 Hz, 0.0044 and 0.0004 of an effort of 2 N.
