@@ -96,6 +96,9 @@ thresholds! { "drive";
     /// limit. Chosen: of drives whose amplifier clips unseen, ours and those of three other authors, the busiest clips a fifth of the time; real
     /// ones of which a limit took the friction's place would have clipped a third of it or half.
     MOST_LIMITED_TIME = 0.25, "1", chosen;
+    /// Least limit of an effort that nears it, over the effort that is passed for [`MOST_LIMITED_TIME`]: at half of its limit a drive gives tanh(1/2) 2 = 0.92
+    /// of what is commanded. Chosen: a lower one takes the peaks off an effort's noise, which does not drive, and was told of real motors.
+    STRONGEST_SMOOTH_LIMIT = 2.0, "1", chosen;
     /// Largest averaging of a recorded effort, rows^2: that of a mean over three rows, 9 / 24, and 1 / 8 for the middle between two rows.
     MOST_AVERAGING = 0.5, "rows^2", derived;
     /// Least exponent of the speed of a friction that is told from dry friction.

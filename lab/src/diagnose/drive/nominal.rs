@@ -1,7 +1,7 @@
 //! The law that a rig file states of its drive, and its refitted values.
 
 use super::candidates::building_up;
-use super::criteria::{LATEST_ROWS, LATEST_S, LOWEST_BAND_HZ, MOST_LIMITED_TIME};
+use super::criteria::{LATEST_ROWS, LATEST_S, LOWEST_BAND_HZ, MOST_LIMITED_TIME, STRONGEST_SMOOTH_LIMIT};
 use super::fit::{Effort, Fit, fit};
 use super::held_out::{missing_forces, rms};
 use super::law::Side;
@@ -79,7 +79,7 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
     moves.then(|| Scales {
         effort,
         peak_effort: largest(&|trial| trial.effort.iter().fold(0.0, |peak: f64, effort| peak.max(effort.abs()))),
-        usual_effort: usual_effort(trials).min(stated_limit(rig)),
+        usual_effort: usual_effort(trials).min(below_stated_limit(rig)),
         speed,
         travel,
         lowest,
@@ -103,10 +103,12 @@ fn usual_effort(trials: &[DriveTrial]) -> f64 {
     sizes.get(at).or(sizes.last()).copied().unwrap_or(0.0)
 }
 
-/// Limit of the effort that the rig file states; infinite where it states none.
-fn stated_limit(rig: &NominalDrive) -> f64 {
+/// What the effort may usually be under the limit that the rig file states, so that the search begins no higher; infinite where it states none.
+fn below_stated_limit(rig: &NominalDrive) -> f64 {
     let limits = rig.effects.iter().filter(|effect| effect.effect.spec().name == "effort_saturation");
-    limits.map(|effect| effect.values[0]).fold(f64::INFINITY, f64::min)
+    let below =
+        |effect: &Resolved| effect.values[0] / if effect.form == 0 { 1.0 } else { STRONGEST_SMOOTH_LIMIT.value() };
+    limits.map(below).fold(f64::INFINITY, f64::min)
 }
 
 /// Greatest mean speed over some rows.
@@ -201,8 +203,9 @@ mod tests {
         // A row more or less: 0.01 N.
         assert!((found(&rig) - 3.0).abs() < 0.015, "{}", found(&rig));
         let effect = find("effort_saturation").expect("an effect of the list");
-        let stated = |limit: f64| vec![Resolved { effect, form: 0, values: vec![limit] }];
-        assert_eq!(found(&NominalDrive { effects: stated(1.5), ..rig.clone() }), 1.5);
-        assert!(found(&NominalDrive { effects: stated(5.0), ..rig }) > 2.9);
+        let stated = |form: usize, limit: f64| vec![Resolved { effect, form, values: vec![limit] }];
+        assert_eq!(found(&NominalDrive { effects: stated(0, 1.5), ..rig.clone() }), 1.5);
+        assert_eq!(found(&NominalDrive { effects: stated(1, 1.5), ..rig.clone() }), 0.75);
+        assert!(found(&NominalDrive { effects: stated(0, 5.0), ..rig }) > 2.9);
     }
 }

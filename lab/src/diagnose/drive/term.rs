@@ -3,6 +3,7 @@
 use super::course::{Along, Course, Varying};
 use super::criteria::{
     GENTLEST_LIMIT, LEAST_EXPONENT, LOAD_DEVIATION, LONGEST_PRESLIDING, MOST_EXPONENT, SLOWEST_SWING,
+    STRONGEST_SMOOTH_LIMIT,
 };
 use super::curve::Curve;
 use super::effort_limit::EffortLimit;
@@ -193,7 +194,8 @@ impl Term {
                 vec![Range::absolute(lowest_limit(scales), scales.peak_effort, 0.02 * scales.effort)]
             }
             Self::SmoothLimit => {
-                vec![Range::relative(lowest_limit(scales), (GENTLEST_LIMIT * scales.peak_effort).value())]
+                let lowest = (STRONGEST_SMOOTH_LIMIT * lowest_limit(scales)).value();
+                vec![Range::relative(lowest, (GENTLEST_LIMIT * scales.peak_effort).value())]
             }
             Self::EffortLag => vec![Range::relative(0.05 * scales.period_s, 0.05 * scales.duration_s)],
             Self::Compliance(side) => {
@@ -363,9 +365,10 @@ mod tests {
     #[test]
     fn what_the_effort_usually_passes_is_no_limit() {
         for limit in [Term::EffortLimit, Term::SmoothLimit] {
+            let lowest = SCALES.usual_effort * if limit == Term::SmoothLimit { 2.0 } else { 1.0 };
             let is_at_end = |value: f64| limit.is_at_end(&[value], &SCALES);
-            assert!(is_at_end(SCALES.usual_effort) && !is_at_end(1.1 * SCALES.usual_effort));
-            assert!(!is_at_end(0.9 * SCALES.peak_effort) && is_at_end(3.0 * SCALES.peak_effort));
+            assert!(is_at_end(lowest) && !is_at_end(1.05 * lowest));
+            assert!(!is_at_end(0.98 * SCALES.peak_effort) && is_at_end(3.0 * SCALES.peak_effort));
         }
     }
 
