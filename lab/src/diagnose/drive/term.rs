@@ -93,7 +93,7 @@ const WORST_LOAD: f64 = 3.0;
 /// Where the wavenumbers stand among the values of ripples.
 const PITCHES: [usize; MOST_PATTERNS] = [2, 5, 8, 11, 14, 17];
 
-/// Lowest limit of an effort: what is passed most of the time is no limit, and under a limit below the friction nothing would move.
+/// Lowest limit of an effort: what is often passed is no limit, but what the friction takes of it.
 fn lowest_limit(scales: &Scales) -> f64 {
     scales.usual_effort.max(0.2 * scales.effort)
 }
@@ -361,7 +361,7 @@ mod tests {
         assert!(Term::Stribeck.is_at_end(&[excess, 0.0, speed], &SCALES));
     }
 
-    /// Where the effort passes it for more than a quarter of the time, or gentler than a third of it tells, it is no limit.
+    /// What the effort passes for more than a quarter of the time is no limit, nor is what it comes nowhere near.
     #[test]
     fn what_the_effort_usually_passes_is_no_limit() {
         for limit in [Term::EffortLimit, Term::SmoothLimit] {
