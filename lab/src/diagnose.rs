@@ -22,6 +22,7 @@ pub mod median;
 pub mod model_comparison;
 pub mod periodogram;
 pub mod phase;
+pub mod quantile;
 pub mod report;
 pub mod signals;
 pub mod so_far;

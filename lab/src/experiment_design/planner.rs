@@ -131,11 +131,10 @@ struct Tried {
 pub fn plan(situation: &Situation<'_>) -> Option<Plan> {
     let room = situation.motion_limits()?;
     let recorded = situation.recorded();
-    let known: Vec<DMatrix<f64>> = recorded.iter().map(|one| one.information().clone()).collect();
     let hidden = situation.hidden(&recorded[0]);
     let count = candidates::motions(room).len();
     let tried: Vec<Tried> =
-        (0..count).into_par_iter().filter_map(|number| situation.attempt(room, number, &known, &hidden)).collect();
+        (0..count).into_par_iter().filter_map(|number| situation.attempt(room, number, &recorded, &hidden)).collect();
     situation.compose(tried, &hidden)
 }
 
@@ -223,7 +222,7 @@ impl Situation<'_> {
         &self,
         room: MotionLimits,
         number: usize,
-        known: &[DMatrix<f64>],
+        recorded: &[Recorded<'_>],
         hidden: &[Departure],
     ) -> Option<Tried> {
         EASE.iter().find_map(|part| {
@@ -232,7 +231,7 @@ impl Situation<'_> {
             let reference = reference_along(&candidate.path.rows(step), self.answer(), &self.closed_loop);
             let predicted = self.predicted(&reference)?;
             let all_keep = predicted.iter().all(|recording| self.keeps(recording));
-            all_keep.then(|| self.judge(candidate, reference, &predicted, known, hidden)).flatten()
+            all_keep.then(|| self.judge(candidate, reference, &predicted, recorded, hidden)).flatten()
         })
     }
 
@@ -268,9 +267,10 @@ impl Situation<'_> {
         candidate: Candidate,
         reference: Vec<f64>,
         predicted: &[Recording],
-        known: &[DMatrix<f64>],
+        recorded: &[Recorded<'_>],
         hidden: &[Departure],
     ) -> Option<Tried> {
+        let known = |at: usize| recorded[at].information();
         let shown: Vec<DVector<f64>> = predicted.iter().map(|recording| whitened(recording, &self.noise)).collect();
         let along = |at: usize| {
             let rig = &self.explanations[at].rig;
@@ -283,19 +283,18 @@ impl Situation<'_> {
             Question::Alternative(other) => {
                 // Each as the truth once, and the mean of what the other's refit leaves: where one can do all that the other
                 // does, only its own truth distinguishes them.
-                let reverse = own.discrepancy(&shown[*other], &known[0]);
-                let forward =
-                    along(*other).map_or(0.0, |(_, response)| response.discrepancy(&shown[0], &known[*other]));
+                let reverse = own.discrepancy(&shown[*other], known(0));
+                let forward = along(*other).map_or(0.0, |(_, response)| response.discrepancy(&shown[0], known(*other)));
                 0.5 * (forward + reverse)
             }
             Question::Interval(parameter, half_width) => {
                 let at = own_steps.iter().position(|(own, _)| own == parameter);
-                at.map_or(0.0, |at| self.interval_energy(parameter, own_steps[at].1, *half_width, at, &own, &known[0]))
+                at.map_or(0.0, |at| self.interval_energy(parameter, own_steps[at].1, *half_width, at, &own, known(0)))
             }
         });
         let departures = hidden.iter().map(|departure| {
             let response = predict(&departure.rig, &self.closed_loop, &reference).ok();
-            response.map_or(0.0, |response| own.discrepancy(&whitened(&response, &self.noise), &known[0]))
+            response.map_or(0.0, |response| own.discrepancy(&whitened(&response, &self.noise), known(0)))
         });
         Some(Tried {
             energy: energy.collect(),

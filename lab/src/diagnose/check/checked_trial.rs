@@ -1,5 +1,6 @@
 //! A trial as the checks see it: its rows, and its motion smoothed until the speed stands out of the noise.
 
+use crate::diagnose::quantile::quantile;
 use crate::diagnose::signals::derivative_filter::DerivativeFilter;
 use crate::diagnose::signals::uniform_trial::UniformTrial;
 use crate::diagnose::thresholds::check_checked_trial::{
@@ -98,13 +99,6 @@ fn travel(values: &[f64]) -> f64 {
     let stride = (values.len() / 100).max(1);
     let picked: Vec<f64> = values.iter().step_by(stride).copied().collect();
     picked.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
-}
-
-/// The value below which the share `at` of `values` lies; `None` where there are none.
-pub fn quantile(mut values: Vec<f64>, at: f64) -> Option<f64> {
-    let last = values.len().checked_sub(1)?;
-    let rank = (at * last as f64).round() as usize;
-    Some(*values.select_nth_unstable_by(rank.min(last), f64::total_cmp).1)
 }
 
 /// The median.

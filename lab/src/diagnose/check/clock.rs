@@ -1,8 +1,9 @@
 //! The time base: gaps, uneven sampling, rates that differ, drop-outs, too few or too slow rows.
 
-use super::checked_trial::{CheckedTrial, bounds, quantile, range};
+use super::checked_trial::{CheckedTrial, bounds, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{count, digits, quantity};
+use crate::diagnose::quantile::quantile;
 use crate::diagnose::thresholds::check_clock::{
     FEW_ROWS, MAX_JITTER, PERIOD_RATIO, RATE_CHANGE_RATIO, RATE_SEGMENTS, TOO_FEW_ROWS,
 };

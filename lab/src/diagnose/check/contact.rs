@@ -1,8 +1,9 @@
 //! Whether the tool touched, whether it was ever free, and whether the force has the right sign.
 
-use super::checked_trial::{CheckedTrial, bounds, correlation, middle, quantile, range};
+use super::checked_trial::{CheckedTrial, bounds, correlation, middle, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{digits, quantity};
+use crate::diagnose::quantile::quantile;
 use crate::diagnose::thresholds::check_contact::{DEPTH_SLICES, FORCE_RISE_SIGMAS, MIN_CORRELATION, MIN_STATE_ROWS};
 use crate::rig::{Contact, Rig};
 

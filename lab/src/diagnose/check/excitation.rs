@@ -1,8 +1,9 @@
 //! What the motion leaves undecided: speeds, depths, ways back and holds that were never run.
 
-use super::checked_trial::{CheckedTrial, bounds, quantile};
+use super::checked_trial::{CheckedTrial, bounds};
 use super::ranked_finding::RankedFinding;
 use super::wording::quantity;
+use crate::diagnose::quantile::quantile;
 use crate::diagnose::thresholds::check_excitation::{
     HOLD_SEGMENTS, MAX_HOLD_DEPTH_FRACTION, MAX_SINGLE_DEPTH_FRACTION, MAX_SINGLE_SPEED_RATIO, MIN_CONTACT_ROWS,
     MIN_DEPTH_ROWS, MIN_HOLD_SEGMENTS, MIN_MOVING_SPEED_FRACTION, MIN_RETURN_FRACTION,

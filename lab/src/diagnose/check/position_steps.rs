@@ -1,8 +1,9 @@
 //! Readings that leap, and sensors that step too coarsely for the motion.
 
-use super::checked_trial::{CheckedTrial, quantile, range};
+use super::checked_trial::{CheckedTrial, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{count, digits, quantity};
+use crate::diagnose::quantile::quantile;
 use crate::diagnose::thresholds::check_position_steps::{
     BLIND_STEPS, COARSE_STEPS, GRAVE_JUMP_FRACTION, JUMP_RANGE_FRACTION, JUMP_RATE_RATIO, JUMP_RESOLUTION_STEPS,
     NOISE_RANGE_SIGMAS,

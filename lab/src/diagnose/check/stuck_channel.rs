@@ -1,8 +1,9 @@
 //! Readings that stand still where they should move: constant columns, frozen channels, clipping.
 
-use super::checked_trial::{CheckedTrial, bounds, middle, quantile, range};
+use super::checked_trial::{CheckedTrial, bounds, middle, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{digits, quantity};
+use crate::diagnose::quantile::quantile;
 use crate::diagnose::thresholds::check_stuck_channel::{
     FROZEN_ROWS, MIN_EQUAL_ROWS, MIN_MOVED_FRACTION, MOVED_FRACTION_INSIDE_RANGE, NOISE_OVER_STEP,
 };

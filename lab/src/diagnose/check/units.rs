@@ -1,8 +1,9 @@
 //! Columns in other units than SI: millimetres, degrees.
 
-use super::checked_trial::{CheckedTrial, quantile, range};
+use super::checked_trial::{CheckedTrial, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::{digits, quantity};
+use crate::diagnose::quantile::quantile;
 use crate::diagnose::thresholds::check_units::FACTOR_TOLERANCE;
 use crate::rig::{Coordinate, Rig};
 

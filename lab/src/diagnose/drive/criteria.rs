@@ -93,8 +93,8 @@ thresholds! { "drive";
     /// gives 3 tanh(1/3) = 0.96 of what is commanded, as far as a motor's constant is known. Chosen.
     GENTLEST_LIMIT = 3.0, "1", chosen;
     /// Share of the time for which an effort may be limited: beyond it that is what usually happens, and the limit takes the friction's
-    /// place. Chosen: of drives whose amplifier clips unseen, ours and those of three other authors, the busiest clips a fifth of the time; real
-    /// ones of which a limit took the friction's place would have clipped a third of it or half. From 0.21 to 0.33 nothing of that changes.
+    /// place. Chosen: of drives whose amplifier clips unseen, ours and those of three other authors, the busiest clips a fifth of the time; two
+    /// real ones of which such a limit took the place of weight and friction would have clipped 0.44 and 0.81 of it.
     MOST_LIMITED_TIME = 0.25, "1", chosen;
     /// Least limit of an effort that nears it, over the effort that is passed for [`MOST_LIMITED_TIME`]: at half of its limit a drive gives tanh(1/2) 2 = 0.92
     /// of what is commanded. Chosen: a lower one takes the peaks off an effort's noise, which does not drive, and was told of real motors.

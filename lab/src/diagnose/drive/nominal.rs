@@ -14,6 +14,7 @@ use super::scales::Scales;
 use super::term::Term;
 use super::trial::DriveTrial;
 use crate::bound::Bound;
+use crate::diagnose::quantile::quantile;
 use crate::effects::Resolved;
 
 /// What a rig file says of a drive.
@@ -97,10 +98,8 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
 
 /// Size of effort that is passed for [`MOST_LIMITED_TIME`].
 fn usual_effort(trials: &[DriveTrial]) -> f64 {
-    let mut sizes: Vec<f64> = trials.iter().flat_map(|trial| &trial.effort).map(|effort| effort.abs()).collect();
-    sizes.sort_unstable_by(f64::total_cmp);
-    let at = ((1.0 - MOST_LIMITED_TIME) * sizes.len() as f64).value() as usize;
-    sizes.get(at).or(sizes.last()).copied().unwrap_or(0.0)
+    let sizes = trials.iter().flat_map(|trial| &trial.effort).map(|effort| effort.abs()).collect();
+    quantile(sizes, (1.0 - MOST_LIMITED_TIME).value()).unwrap_or(0.0)
 }
 
 /// What the effort may usually be under the limit that the rig file states, so that the search begins no higher; infinite where it states none.
