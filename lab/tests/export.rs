@@ -140,6 +140,11 @@ fn what_cannot_be_said_is_refused_by_name_and_left_to_the_stepper() {
         "{module}"
     );
     assert!(!module.contains("coulomb"), "{module}");
+    let carried = "[[effect]]\nname = \"gravity_load\"\nload_n = 3.0\n";
+    let gear = "[[effect]]\nname = \"load_dependent_friction\"\nload_coefficient = 0.2\n";
+    let weight = "(\"gravity_load\", \"constant\", {\"load\": 3.0})";
+    assert!(exported("python", MJCF, &format!("{gear}{carried}"), &[]).contains(weight));
+    assert!(!exported("python", MJCF, &format!("{sublinear}{carried}"), &[]).contains(weight));
     let cable = "[[effect]]\nname = \"parasitic_force\"\nform = \"by_speed\"\nspeed_m_s = 0.1\nlinear_n = 0.2\nsquare_n = 0.0\n";
     refuses("mjcf", MJCF, cable, &[], &["parasitic_force", "model the cable"]);
     assert!(exported("python", MJCF, cable, &[]).contains("(\"parasitic_force\", \"by_speed\", {\"speed\": 0.1,"));

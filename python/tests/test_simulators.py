@@ -100,6 +100,29 @@ ARM = """<mujoco>
 """
 
 
+def test_a_joint_rubs_by_the_weight_that_it_carries(folder_of_test):
+    """A quarter of the weight, which the model itself has: at a quarter of a turn 1 N m of 4, hanging down none."""
+    physics = (
+        '[[effect]]\nname = "gravity_load"\nform = "by_angle"\nsine_n_m = 4.0\ncosine_n_m = 0.0\nload_n_m = 0.0\n'
+        '[[effect]]\nname = "load_dependent_friction"\nload_coefficient = 0.25\n'
+    )
+    rig = '[rig]\nname = "j"\ncoordinate = "rotary"\n[drive]\ninertia_kg_m2 = 0.1\nviscous_n_m_s_rad = 0.0\n'
+    made = module(folder_of_test, physics, ARM, "shoulder", rig)
+
+    def pushed(angle, torque):
+        model = mujoco.MjModel.from_xml_string(ARM)
+        data = mujoco.MjData(model)
+        data.qpos[0] = angle
+        data.ctrl[0] = torque
+        stepper = made.Stepper(model, data)
+        for _ in range(50):
+            stepper.step()
+        return abs(data.qpos[0] - angle)
+
+    assert pushed(np.pi / 2, 0.99) < 1e-9 < 1e-4 < pushed(np.pi / 2, 1.2)
+    assert pushed(0.0, 0.2) > 1e-4
+
+
 def test_one_stepper_holds_several_joints(folder_of_test):
     """Two joints whose friction holds more than is asked of it stand still; one alone would be dragged along by the other."""
     rub = '[[effect]]\nname = "sublinear_friction"\nlevel_n_m = 2.0\nexponent = 0.0\nreference_speed_rad_s = 1.0\n'

@@ -23,6 +23,8 @@ pub struct DriveState {
     pub viscous: f64,
     /// What effects take from the effort.
     pub resistance: f64,
+    /// The part of it that is weight: friction can grow with it.
+    pub weight: f64,
 }
 
 impl DriveState {

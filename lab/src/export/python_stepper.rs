@@ -43,6 +43,9 @@ pub fn export(export: &Export<'_>, text: &str) -> Result<Exported, InputError> {
             }
         }
     }
+    if stepped.iter().any(|effect| effect.name == "load_dependent_friction") {
+        stepped.extend(export.effects.iter().filter(|effect| effect.name == "gravity_load"));
+    }
     // A sensor's lag comes before its zero, and its zero before the end of its range.
     stepped.sort_by_key(|effect| effect.stage);
     let contact = stepped.iter().any(|effect| effect.place == Place::Contact);

@@ -4,15 +4,28 @@ import mujoco
 import numpy as np
 
 
-def stribeck(p, speed, contact):
+def stribeck(p, speed, borne):
     return p["level"] + p["breakaway_excess"] * math.exp(-speed / p["stribeck_speed"])
 
 
-# Friction laws: the most that each can hold at a speed, N or N m. `contact` is the force that the tool presses with.
+# Friction laws: the most that each can hold at a speed, N or N m. `borne` is the force that the tool presses with, and the weight.
 FRICTION = {
-    "sublinear_friction": lambda p, speed, contact: p["level"] * (speed / p["reference_speed"]) ** p["exponent"],
+    "sublinear_friction": lambda p, speed, borne: p["level"] * (speed / p["reference_speed"]) ** p["exponent"],
     "stribeck_friction": stribeck,
-    "load_dependent_friction": lambda p, speed, contact: p["load_coefficient"] * abs(contact),
+    "load_dependent_friction": lambda p, speed, borne: p["load_coefficient"] * abs(borne),
+}
+
+
+def by_position(p, q):
+    turn = 2.0 * math.pi * q / p["length"]
+    return p["sine"] * math.sin(turn) + p["cosine"] * math.cos(turn)
+
+
+# The weight at a position, N or N m, by its form. The model itself has it; friction can grow with it.
+WEIGHT = {
+    "constant": lambda p, q: p["load"],
+    "by_angle": lambda p, q: p["sine"] * math.sin(q) + p["cosine"] * math.cos(q) + p["load"],
+    "by_position": by_position,
 }
 
 
@@ -25,6 +38,7 @@ class Joint:
             raise ValueError(f"the model has no joint {name}")
         self.qpos, self.dof = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
         self.frictions = [(FRICTION[effect], values) for effect, _, values in effects if effect in FRICTION]
+        self.weights = [(WEIGHT[form], values) for effect, form, values in effects if effect == "gravity_load"]
         self.sensor = [effect for effect in effects if effect[0] in SENSOR]
         self.law, self.given = None, contact_force
         if contact is not None:
@@ -33,7 +47,8 @@ class Joint:
             import palpate
 
             self.law = palpate.ContactLaw(tomllib.loads(contact))
-        if self.law is None and contact_force is None and any(effect == "load_dependent_friction" for effect, _, _ in effects):
+        bears = self.law is not None or contact_force is not None or self.weights
+        if not bears and any(effect == "load_dependent_friction" for effect, _, _ in effects):
             raise ValueError(f"load_dependent_friction of joint {name} needs contact_force")
         self.friction = 0.0  # The friction that acts in this step, N or N m.
         self.contact = 0.0  # The force that the tool presses with, N or N m.
@@ -50,7 +65,8 @@ class Joint:
     def most(self, data):
         """The most that friction can hold."""
         speed = abs(data.qvel[self.dof])
-        return sum(law(values, speed, self.contact) for law, values in self.frictions)
+        borne = self.contact + sum(weight(values, data.qpos[self.qpos]) for weight, values in self.weights)
+        return sum(law(values, speed, borne) for law, values in self.frictions)
 
 
 class Stepper:
@@ -59,7 +75,7 @@ class Stepper:
     Call `step()` in place of `mujoco.mj_step(model, data)`.
 
     contact_force: a function that returns the force that the tool presses with, N or N m at the joint; needed for friction that depends
-        on the load, where this module holds no law of the contact. A dictionary by the joint's name for several joints.
+        on the load, where this module holds neither a law of the contact nor a weight. A dictionary by the joint's name for several joints.
     surface: the name of the geom that is touched. Where this module holds the contact's law, the geom's own contact is switched off in
         `model`.
     also: other modules of this kind, one a joint: their frictions are found together.

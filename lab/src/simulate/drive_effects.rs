@@ -78,6 +78,7 @@ impl<'a> DriveEffects<'a> {
             inertia: self.drive.inertia,
             viscous: self.drive.viscous,
             resistance: 0.0,
+            weight: 0.0,
         };
         let (loads, frictions) = {
             let at = self.terms.partition_point(|term| term.active.stage() < Stage::Friction);

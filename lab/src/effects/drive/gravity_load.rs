@@ -73,7 +73,7 @@ impl Effect for GravityLoad {
     }
 
     fn act_on_drive(&self, form: usize, values: &[f64], _state: &mut EffectState, push: &mut DriveState) {
-        push.resistance += match form {
+        let weight = match form {
             0 => values[0],
             1 => {
                 let (sine, cosine) = push.position.sin_cos();
@@ -84,6 +84,8 @@ impl Effect for GravityLoad {
                 values[0] * turn.sin() + values[1] * turn.cos()
             }
         };
+        push.weight += weight;
+        push.resistance += weight;
     }
 }
 
@@ -107,8 +109,10 @@ mod tests {
                 inertia: 1.0,
                 viscous: 0.0,
                 resistance: 0.0,
+                weight: 0.0,
             };
             GravityLoad.act_on_drive(1, &[sine, cosine, load], &mut EffectState::default(), &mut push);
+            assert_eq!(push.weight, push.resistance);
             push.resistance
         };
         for (angle, expected) in
