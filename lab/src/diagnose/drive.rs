@@ -6,7 +6,7 @@
 //! bandwidth is chosen: quantisation is noise of the measurement, and the smoothed disturbance is the missing force as a signal.
 //!
 //! [`trial`] and [`input`] are the data, [`denoised`] by a [`wiener_filter`] where noise in them does not drive; [`law`], [`dry_friction`],
-//! [`course`], [`curve`], [`presliding`], [`two_mass_system`] and [`noise`] the equations.
+//! [`course`], [`curve`], [`presliding`], [`viscous_motion`], [`two_mass_system`] and [`noise`] the equations.
 //! [`filter`] gives the [`innovations`] of one body or two. [`model`] and [`term`] are what can be in a law, with the [`range`] of each
 //! value in the recordings' [`scales`]; [`likelihood`] judges them, and [`fit`] finds the likeliest by [`levenberg_marquardt`] and
 //! [`noise_search`]. [`nominal`] is the law of the rig file; [`candidates`] on a [`sample`] of the rows, by [`growth`], [`links`] and
@@ -74,6 +74,7 @@ pub mod two_body_smoother;
 pub mod two_mass_motion;
 pub mod two_mass_system;
 pub mod validation;
+pub mod viscous_motion;
 pub mod wiener_filter;
 pub mod worth;
 

@@ -62,7 +62,8 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
         let pitches = OrderSpectrum::of(data, &scales, disturbance).pitches(PITCHES);
         offer(Term::Cogging, pitches.into_iter().map(|pitch| vec![0.0, 0.0, wavenumber(pitch)]).collect());
     }
-    if !has("effort_lag") {
+    // How soon an effort accelerates is told by the inertia.
+    if !has("effort_lag") && !scales.holds_inertia() {
         offer(Term::EffortLag, vec![vec![2.0 * scales.period_s], vec![10.0 * scales.period_s]]);
     }
     if !has("effort_saturation") {
@@ -70,7 +71,10 @@ pub fn one_body(data: &Data<'_>, base: &Fit, disturbance: &[Vec<f64>]) -> Vec<Ca
         offer(Term::SmoothLimit, vec![vec![scales.peak_effort]]);
     }
     let every = |has: fn(&DriveTrial) -> bool| data.trials.iter().all(has);
-    if every(|trial| trial.force.is_some() || trial.load.is_some()) && !has("load_dependent_friction") {
+    let is_borne = every(|trial| trial.force.is_some() || trial.load.is_some());
+    // Under a weight that stays the same it is Coulomb friction, and under one that changes little hardly another: it is looked for beside that.
+    let is_carried = rubs && base.model.terms.contains(&Term::AngleLoad);
+    if (is_borne || is_carried) && !has("load_dependent_friction") {
         offer(Term::LoadFriction, vec![vec![0.02]]);
     }
     if every(|trial| trial.force.is_some()) {

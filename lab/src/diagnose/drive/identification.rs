@@ -21,11 +21,15 @@ use crate::diagnose::verdict::Verdict;
 ///
 /// Where the encoder moves from row to row as no force on the inertia could move it (the nominal law leaves more than the whole effort),
 /// and no law is found, it is not on the body that the law moves: between them is what rattles or bends. The slower motion is looked at
-/// then, as if the encoder were coarser by steps, until that shows a law; the rest stays unknown.
+/// then, as if the encoder were coarser by steps, until that shows a law; the rest stays unknown. Before that, where the inertia ended where its
+/// search did, the rig file's is tried in its place.
 #[must_use]
 pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
     let first = identify_between_pushes(trials, rig, seed, say)?;
     let scales = first.chosen.model.scales;
+    if let Some(found) = with_given_inertia(&first, rig, seed, say) {
+        return Some(found);
+    }
     if !first.named.is_empty() || first.verdict != Verdict::Unknown || rms(&first.missing[1]) < scales.effort {
         return Some(first);
     }
@@ -41,6 +45,21 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
         step *= COARSER.value();
     }
     Some(first)
+}
+
+/// What is found where the inertia is that of the rig file, known no better than before, if that names more than `first`, or leaves less unexplained; `None`
+/// where the motion tells the inertia. A controller that keeps the speed answers what hinders the motion with effort, and nothing accelerates: a law of
+/// white disturbances takes that for an inertia as large as its search allows.
+fn with_given_inertia(first: &Outcome, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
+    if first.chosen.model.has_believed_inertia(&first.chosen.values) {
+        return None;
+    }
+    say("the drive: with the inertia of the rig file");
+    let held = NominalDrive { inertia_factor: 1.0, ..rig.clone() };
+    let mut found = identify_between_pushes(first.trials.clone(), &held, seed, say)?;
+    found.intervals[index::INERTIA] = [rig.inertia / rig.inertia_factor, rig.inertia * rig.inertia_factor];
+    let is_better = !found.named.is_empty() && (first.named.is_empty() || found.verdict == Verdict::Explained);
+    is_better.then_some(found)
 }
 
 /// Whether it is a law of the motion that a coarser encoder shows: not one of how quickly a force comes or passes on, of which that shows
@@ -152,7 +171,12 @@ fn search_from<'a>(data: Data<'a>, rig: &NominalDrive, nominal: Fit) -> Search<'
     let scales = nominal.model.scales;
     let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
     let band_hz = crossing.clamp(LOWEST_BAND_HZ.value().min(0.1 / scales.period_s), 0.4 / scales.period_s);
-    let sides = rig.encoder.map_or(vec![Side::Motor, Side::Load], |side| vec![side]);
+    let sides = match rig.encoder {
+        // How two bodies share an inertia is not told, either.
+        _ if scales.holds_inertia() => Vec::new(),
+        Some(side) => vec![side],
+        None => vec![Side::Motor, Side::Load],
+    };
     Search { data, scales, nominal, band_hz, sides, is_asked: false, effort_noise_density: data.effort_noise_density() }
 }
 

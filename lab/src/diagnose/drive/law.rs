@@ -1,6 +1,6 @@
 //! The drive's law of motion: a mass and viscous friction, and everything that can be there beside them.
 //!
-//! inertia a = effort - force - viscous v - load(x) - sign(v) dry(|v|, force) + disturbance
+//! inertia a = effort - force - viscous v - load(x) - sign(v) dry(|v|, force + weight(x)) + disturbance
 
 pub use crate::rig::TransmissionSide as Side;
 
@@ -9,6 +9,7 @@ use super::curve::Curve;
 use super::dry_friction::DryFriction;
 use super::effort_limit::EffortLimit;
 use super::presliding::{Slips, Step};
+use super::viscous_motion::ViscousMotion;
 
 /// What lies between motor and load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,12 +56,27 @@ impl Periodic {
     }
 }
 
+/// What the axis carries: constant + sine sin(k x) + cosine cos(k x).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Weight {
+    /// N or N m.
+    pub constant: f64,
+    /// What changes with the position.
+    pub along: Periodic,
+}
+
+impl Weight {
+    fn at(&self, position: f64) -> f64 {
+        self.constant + self.along.at(position)
+    }
+}
+
 /// What acts on a body through a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Acting {
     /// Everything that does not depend on the motion, N or N m.
     pub push: f64,
-    /// What is borne, N or N m: friction can grow with it.
+    /// What is borne beside the weight of the law, N or N m: friction can grow with it.
     pub borne: f64,
     /// What dry friction is multiplied by.
     pub friction_factor: f64,
@@ -90,10 +106,12 @@ pub struct DriveLaw {
     pub friction: DryFriction,
     /// How friction or effort changes, of no law.
     pub course: Course,
-    /// Constant load, N or N m.
+    /// Half of the difference between friction forward and backward, N or N m.
     pub offset: f64,
-    /// Loads that repeat along the way: gravity by angle, cogging.
-    pub periodic: Vec<Periodic>,
+    /// Friction can grow with it.
+    pub weight: Weight,
+    /// Cogging.
+    pub ripples: Vec<Periodic>,
     /// Load by position, of no law.
     pub curve: Curve,
     /// What the force sensor shows too much, as a share of the force.
@@ -124,7 +142,8 @@ impl DriveLaw {
             friction: DryFriction::NONE,
             course: Course::default(),
             offset: 0.0,
-            periodic: Vec::new(),
+            weight: Weight::default(),
+            ripples: Vec::new(),
             curve: Curve::default(),
             force_gain_error: 0.0,
             force_delay_s: 0.0,
@@ -136,22 +155,30 @@ impl DriveLaw {
     /// Load that depends on the position alone, N or N m.
     #[must_use]
     pub fn load(&self, position: f64) -> f64 {
-        self.offset + self.curve.at(position) + self.periodic.iter().map(|periodic| periodic.at(position)).sum::<f64>()
+        let ripples = self.ripples.iter().map(|ripple| ripple.at(position)).sum::<f64>();
+        self.offset + self.weight.at(position) + self.curve.at(position) + ripples
+    }
+
+    /// What dry friction grows with at `position` where `borne` acts beside the weight, N or N m.
+    #[must_use]
+    pub fn borne(&self, borne: f64, position: f64) -> f64 {
+        if self.friction.load_share == 0.0 { borne } else { borne + self.weight.at(position) }
     }
 
     /// Position and velocity of one body of `inertia` after `step` seconds under what is `acting`; `slips` is what friction remembers of
-    /// the way, where it builds up over one. Between two turns of the direction the velocity is taken by the midpoint rule; a turn is
+    /// the way, where it builds up over one. Viscous friction is exact, and other friction that of the step's middle; a turn is
     /// met at its instant, and there the body stays where friction can hold it.
     #[must_use]
     pub fn advance(&self, state: [f64; 2], slips: &mut Slips, acting: &Acting, inertia: f64, step: f64) -> [f64; 2] {
         let [mut position, mut velocity] = state;
         let Acting { push, borne, friction_factor, viscous_factor } = *acting;
         let viscous = viscous_factor * self.viscous;
-        let push = push - self.load(position + 0.5 * step * velocity);
+        let middle = position + 0.5 * step * velocity;
+        let (push, borne) = (push - self.load(middle), self.borne(borne, middle));
+        let damping = viscous / inertia;
         if !self.friction.acts() {
-            let middle = velocity + 0.5 * step * (push - viscous * velocity) / inertia;
-            let after = velocity + step * (push - viscous * middle) / inertia;
-            return [position + 0.5 * step * (velocity + after), after];
+            let [way, after] = ViscousMotion::new(velocity, push / inertia, damping).after(step);
+            return [position + way, after];
         }
         if self.friction.presliding > 0.0 {
             let level = friction_factor * self.friction.level(velocity.abs(), borne);
@@ -163,21 +190,21 @@ impl DriveLaw {
         let mut left = step;
         for _ in 0..TURNS_PER_ROW {
             let Some(direction) = Self::direction(velocity, push, || level(0.0)) else { return [position, 0.0] };
-            let rate = |speed: f64| {
-                let against = direction * level(speed.abs()) + viscous * speed;
-                (push - against) / inertia
+            let motion = |speed: f64| {
+                let acceleration = (push - direction * level(speed)) / inertia;
+                ViscousMotion::new(velocity, acceleration, damping)
             };
-            let middle = velocity + 0.5 * left * rate(velocity);
-            let acceleration = rate(if middle * direction < 0.0 { 0.0 } else { middle });
-            let after = velocity + left * acceleration;
+            let [_, middle] = motion(velocity.abs()).after(0.5 * left);
+            let motion = motion(if middle * direction < 0.0 { 0.0 } else { middle.abs() });
+            let [way, after] = motion.after(left);
             if after * direction >= 0.0 {
-                return [position + 0.5 * left * (velocity + after), after];
+                return [position + way, after];
             }
             if velocity == 0.0 {
                 return [position, 0.0];
             }
-            let turn = (-velocity / acceleration).clamp(0.0, left);
-            position += 0.5 * velocity * turn;
+            let turn = motion.stops_after().clamp(0.0, left);
+            position += motion.after(turn)[0];
             left -= turn;
             velocity = 0.0;
         }
@@ -216,6 +243,22 @@ mod tests {
         assert!((velocity - 0.01 * 0.5 / 2.0).abs() < 1e-15);
     }
 
+    /// A fifth of what is borne: the weight of 3 N downhill at a quarter of a turn, where nothing is borne beside it, and with 1 N on top.
+    #[test]
+    fn friction_grows_with_the_weight_where_the_body_is() {
+        let mut law = DriveLaw::nominal(2.0, 0.0, 0.0);
+        law.friction.load_share = 0.2;
+        law.weight.along = Periodic { sine: 3.0, cosine: 0.0, wavenumber: 1.0 };
+        let holds = |at: f64, borne: f64, push: f64| {
+            let acting = Acting { borne, ..pushed(push) };
+            law.advance([at, 0.0], &mut Slips::default(), &acting, 2.0, 0.01) == [at, 0.0]
+        };
+        let quarter = std::f64::consts::FRAC_PI_2;
+        assert!(holds(quarter, 0.0, 3.0 + 0.599) && !holds(quarter, 0.0, 3.0 + 0.601));
+        assert!(holds(quarter, 1.0, 3.0 - 0.799) && !holds(quarter, 1.0, 3.0 - 0.801));
+        assert!(holds(0.0, 0.0, 0.0) && !holds(0.0, 0.0, 1e-9));
+    }
+
     #[test]
     fn a_body_comes_to_rest_at_the_instant_of_physics_and_stays() {
         // 1 N against 2 kg at 2 mm/s: rest after 4 ms and 4 um, the rest of the step does nothing.
@@ -232,13 +275,14 @@ mod tests {
     }
 
     #[test]
-    fn viscous_friction_alone_decays_by_the_exponential_to_the_third_order() {
+    fn viscous_friction_alone_decays_by_the_exponential() {
         let law = DriveLaw::nominal(0.8, 4.0, 0.0);
-        let [position, velocity] = law.advance([0.0, 1.0], &mut Slips::default(), &pushed(0.0), 0.8, 1e-3);
-        let decay = (-5e-3f64).exp();
-        // The midpoint rule errs by (b h / m)^3 / 6 a step.
-        assert!((velocity - decay).abs() < 1.1 * 5e-3f64.powi(3) / 6.0);
-        assert!((position - (1.0 - decay) / 5.0).abs() < 1e-8);
+        // However long a row is beside the time in which the friction stops the body.
+        for step in [1e-3, 0.1, 2.0] {
+            let [position, velocity] = law.advance([0.0, 1.0], &mut Slips::default(), &pushed(0.0), 0.8, step);
+            let decay = (-5.0 * step).exp();
+            assert!((velocity - decay).abs() < 1e-14 && (position - (1.0 - decay) / 5.0).abs() < 1e-14);
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A model of the drive: its terms, and all values in one vector.
 
-use super::criteria::{INERTIA_FACTOR, MOST_AVERAGING};
+use super::criteria::MOST_AVERAGING;
 use super::law::DriveLaw;
 use super::range::Range;
 use super::scales::Scales;
@@ -44,7 +44,7 @@ impl Model {
             (-scales.period_s, scales.latest_effort_s)
         };
         let mut ranges = vec![
-            Range::relative(scales.inertia / INERTIA_FACTOR, scales.inertia * INERTIA_FACTOR.value()),
+            Range::relative(scales.inertia / scales.inertia_factor, scales.inertia * scales.inertia_factor),
             Range::absolute(0.0, f64::INFINITY, 0.1 * viscous),
             Range::absolute(earliest, latest, 0.3 * scales.period_s),
             Range::absolute(0.0, MOST_AVERAGING.value(), 0.1 * MOST_AVERAGING.value()),
@@ -90,10 +90,10 @@ impl Model {
         (-2.0 * values[index::DELAY] / self.scales.recorded_period_s).clamp(0.0, 1.0) + 0.0
     }
 
-    /// Whether the inertia lies within what is believed of it: at an end it stands for something else.
+    /// Whether the inertia lies within what is believed of it, or is not fitted: at an end it stands for something else.
     #[must_use]
     pub fn has_believed_inertia(&self, values: &[f64]) -> bool {
-        !self.ranges()[index::INERTIA].is_at_end(values[index::INERTIA])
+        self.scales.holds_inertia() || !self.ranges()[index::INERTIA].is_at_end(values[index::INERTIA])
     }
 
     /// Whether a telling value of a term ended where its search did.

@@ -22,6 +22,8 @@ use crate::effects::Resolved;
 pub struct NominalDrive {
     /// kg or kg m^2.
     pub inertia: f64,
+    /// Factor by which the drive's inertia may differ from that; 1: not at all.
+    pub inertia_factor: f64,
     /// N s/m or N m s/rad.
     pub viscous: f64,
     /// Whether positions are angles.
@@ -89,6 +91,7 @@ pub fn scales(trials: &[DriveTrial], rig: &NominalDrive) -> Option<Scales> {
         latest_effort_s: latest_effort_s(trials[0].period_s),
         duration_s: largest(&DriveTrial::duration_s),
         inertia: rig.inertia,
+        inertia_factor: rig.inertia_factor,
         viscous: rig.viscous,
         resolution: rig.resolution.max(1e-6 * travel),
         is_rotary: rig.is_rotary,
@@ -152,7 +155,7 @@ pub fn punctual_and_lagged(
 ) -> Option<[Fit; 2]> {
     let recorded = data.trials[0].recorded_period_s;
     let delay = nominal.values[index::DELAY];
-    if delay <= recorded || nominal.model.has("effort_lag") {
+    if delay <= recorded || nominal.model.has("effort_lag") || nominal.model.scales.holds_inertia() {
         return None;
     }
     let scales = Scales { latest_effort_s: recorded, ..nominal.model.scales };

@@ -200,6 +200,7 @@ mod tests {
         latest_effort_s: 0.02,
         duration_s: 20.0,
         inertia: 0.8,
+        inertia_factor: 5.0,
         viscous: 4.0,
         resolution: 0.0,
         is_rotary: false,

@@ -1,5 +1,6 @@
 //! From recordings and a rig file to the drive's trials and nominal law.
 
+use super::criteria::INERTIA_FACTOR;
 use super::nominal::NominalDrive;
 use super::trial::DriveTrial;
 use crate::effects::Resolved;
@@ -46,6 +47,7 @@ pub fn nominal(rig: &Rig, recordings: &[Recording], effects: Vec<Resolved>) -> O
     let drive = rig.drive?;
     let steps = recordings.iter().map(|trial| Figures::of(rig, trial).position.resolution);
     Some(NominalDrive {
+        inertia_factor: INERTIA_FACTOR.value(),
         inertia: drive.inertia,
         viscous: drive.viscous,
         is_rotary: rig.coordinate == crate::rig::Coordinate::Rotary,

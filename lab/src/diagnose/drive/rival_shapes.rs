@@ -6,12 +6,15 @@
 //! parametric law with a nonparametric one (W. Haerdle, E. Mammen, *Ann. Stat.* 21, 1993, 1926), by likelihood with a price for each value.
 
 use super::candidates::is_likelier;
+use super::course::Varying;
+use super::criteria::LEAST_ACTING_EFFORT;
 use super::fit::{self, Effort, Fit};
 use super::likelihood::Data;
 use super::sample::sample;
 use super::selection::Search;
 use super::shapes::{courses, load_by_place, shaped};
 use super::term::Term;
+use super::trial::DriveTrial;
 
 impl Search<'_> {
     /// `fit` without a name in whose place a tone in time or a shape does far better, and that is not worth having beside it; `None` where all stand. Shapes
@@ -66,7 +69,23 @@ impl Search<'_> {
     }
 
     fn does_far_better(&self, rival: &Fit, fit: &Fit) -> bool {
-        is_likelier(rival, fit) && self.leaves_far_more(fit, rival)
+        let drives = self.acting_part_of_effort(rival) >= LEAST_ACTING_EFFORT.value();
+        drives && is_likelier(rival, fit) && self.leaves_far_more(fit, rival)
+    }
+
+    /// Root mean square of the effort that acts under a `course` over that of the effort that was recorded. Where next to none acts, nothing is
+    /// left of motion at one speed, whatever the effort was.
+    fn acting_part_of_effort(&self, fit: &Fit) -> f64 {
+        let course = fit.model.law(&fit.values).course;
+        let power = |factor: &dyn Fn(f64) -> f64| {
+            let of = |trial: &DriveTrial| {
+                let rows = trial.effort.iter().zip(&trial.source_time);
+                rows.map(|(effort, time)| (factor(time - trial.time[0]) * effort).powi(2)).sum::<f64>()
+            };
+            self.data.trials.iter().map(of).sum::<f64>()
+        };
+        let acting = power(&|time| course.factor(Varying::Effort, time, [0.0; 2]));
+        (acting / power(&|_| 1.0).max(f64::MIN_POSITIVE)).sqrt()
     }
 }
 
@@ -87,7 +106,7 @@ fn is_of_one_kind(shape: &Term, term: &Term) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{TestDrive, search_over};
+    use super::super::testing::{SCALES, TestDrive, search_over};
     use super::*;
 
     /// A damper of 4 N s/m forward and 8 N s/m backward: a load takes the mean of what is missing, and the rest shows that it is none.
@@ -112,6 +131,33 @@ mod tests {
             let weight = TestDrive { load: 0.5, one_way, ..TestDrive::PLAIN };
             assert_eq!(stands(&weight, &[Term::ConstantLoad], &[0.4]), [Term::ConstantLoad]);
         }
+    }
+
+    /// An effort that fades to nothing leaves nothing of motion that accelerates little, and is no answer to what it was.
+    #[test]
+    fn an_effort_that_hardly_acts_is_no_rival() {
+        let drive = TestDrive { load: 0.5, ..TestDrive::PLAIN };
+        let trials = [drive.trial(4.0, 6)];
+        let search = search_over(&trials, &drive);
+        let by_time = courses(&SCALES, &search.nominal.model)
+            .find(|shape| matches!(shape, Term::Course { of: Varying::Effort, .. }))
+            .expect("effort by time");
+        let fading = |by: f64| {
+            let mut fit = shaped(&search.nominal, by_time.clone());
+            fit.values[search.nominal.values.len()..].fill(-by);
+            fit
+        };
+        for by in [0.0, 0.4, 0.6, 1.0] {
+            assert!((search.acting_part_of_effort(&fading(by)) - (1.0 - by)).abs() < 1e-12, "{by}");
+        }
+        // However much likelier, and however little it leaves.
+        let quiet = |by: f64| {
+            let mut fit = Fit { log_likelihood: search.nominal.log_likelihood + 1e6, ..fading(by) };
+            fit.noise.ln_disturbance -= 10.0;
+            fit
+        };
+        assert!(search.does_far_better(&quiet(0.4), &search.nominal));
+        assert!(!search.does_far_better(&quiet(0.6), &search.nominal));
     }
 
     /// Dry friction of 0.4 N beside a spring of 60 N/m that returns the slide: a load by place does far better in its place, and friction is there beside it.

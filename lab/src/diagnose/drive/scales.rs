@@ -26,6 +26,8 @@ pub struct Scales {
     pub duration_s: f64,
     /// Inertia of the rig file.
     pub inertia: f64,
+    /// Factor by which a fitted inertia may differ from it; 1: not at all.
+    pub inertia_factor: f64,
     /// Viscous friction of the rig file.
     pub viscous: f64,
     /// Encoder's step, m or rad.
@@ -37,6 +39,12 @@ pub struct Scales {
 }
 
 impl Scales {
+    /// Whether the inertia is that of the rig file, and not fitted.
+    #[must_use]
+    pub fn holds_inertia(&self) -> bool {
+        self.inertia_factor <= 1.0
+    }
+
     /// Density of the disturbance that a search starts from, N^2 s: a tenth of the effort, new in each row.
     #[must_use]
     pub fn starting_density(&self) -> f64 {

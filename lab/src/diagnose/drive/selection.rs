@@ -84,8 +84,13 @@ impl Search<'_> {
             let grown = distinct(grown);
             sets.extend(grown.iter().cloned());
             let price = |fit: &Fit| fit.log_likelihood - LEAST_GAIN_PER_VALUE.value() * fit.values.len() as f64;
-            let worthy = grown.iter().filter(|fit| self.is_worth(fit, &best));
-            match worthy.max_by(|a, b| price(a).total_cmp(&price(b))) {
+            let worthy: Vec<&Fit> = grown.iter().filter(|fit| self.is_worth(fit, &best)).collect();
+            // A link follows what the encoder shows row by row, and is likely by that alone; where a rigid law takes far more of the force it is none.
+            let is_outdone = |fit: &Fit| {
+                let mut rigid = worthy.iter().filter(|other| !other.model.has_link());
+                fit.model.has_link() && rigid.any(|other| self.leaves_far_more(fit, other))
+            };
+            match worthy.iter().copied().filter(|fit| !is_outdone(fit)).max_by(|a, b| price(a).total_cmp(&price(b))) {
                 Some(top) => (best, is_waiting) = (top.clone(), false),
                 // Two terms can be worth it where neither is alone: a link hides friction, and friction a link.
                 None if !is_waiting && grown.iter().any(|fit| is_likelier(fit, &best)) => is_waiting = true,

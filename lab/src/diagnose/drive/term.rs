@@ -295,14 +295,13 @@ impl Term {
             }
             Self::Presliding => law.friction.presliding = values[0],
             Self::LoadFriction => law.friction.load_share = values[0],
-            Self::ConstantLoad => law.offset += values[0],
+            Self::ConstantLoad => law.weight.constant += values[0],
             Self::AngleLoad if scales.is_rotary => {
-                law.periodic.push(Periodic { sine: values[0], cosine: values[1], wavenumber: 1.0 });
-                law.offset += values[2];
+                law.weight.along = Periodic { sine: values[0], cosine: values[1], wavenumber: 1.0 };
+                law.weight.constant += values[2];
             }
-            Self::AngleLoad | Self::Cogging => {
-                law.periodic.push(Periodic { sine: values[0], cosine: values[1], wavenumber: values[2] });
-            }
+            Self::AngleLoad => law.weight.along = periodic(values),
+            Self::Cogging => law.ripples.push(periodic(values)),
             Self::Ripples(_) => {
                 values.chunks_exact(3).for_each(|one| Self::Cogging.apply(one, scales, law));
             }
@@ -339,6 +338,10 @@ impl Term {
             }
         }
     }
+}
+
+fn periodic(values: &[f64]) -> Periodic {
+    Periodic { sine: values[0], cosine: values[1], wavenumber: values[2] }
 }
 
 /// Of a pattern that repeats every `pitch`.

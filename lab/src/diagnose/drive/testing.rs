@@ -4,6 +4,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::criteria::INERTIA_FACTOR;
 use super::fit::{Effort, Fit, fit};
 use super::law::{DriveLaw, Link, Side};
 use super::levenberg_marquardt::Ended;
@@ -24,7 +25,16 @@ pub fn pair_law(stiffness: f64) -> (DriveLaw, Link) {
 
 /// What a rig file says of a drive along a line, of `inertia` (kg) and `viscous` friction (N s/m), and nothing else.
 pub fn nominal(inertia: f64, viscous: f64) -> NominalDrive {
-    NominalDrive { inertia, viscous, is_rotary: false, encoder: None, resolution: 1e-5, effects: Vec::new() }
+    let inertia_factor = INERTIA_FACTOR.value();
+    NominalDrive {
+        inertia,
+        inertia_factor,
+        viscous,
+        is_rotary: false,
+        encoder: None,
+        resolution: 1e-5,
+        effects: Vec::new(),
+    }
 }
 
 /// Sizes of a recording of [`TestDrive::PLAIN`], by and large.
@@ -40,6 +50,7 @@ pub const SCALES: Scales = Scales {
     latest_effort_s: 0.02,
     duration_s: 3.0,
     inertia: 0.8,
+    inertia_factor: 5.0,
     viscous: 4.0,
     resolution: 1e-5,
     is_rotary: false,

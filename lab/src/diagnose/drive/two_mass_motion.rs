@@ -11,7 +11,7 @@ pub struct Pushes {
     pub effort: f64,
     /// Of the load on what it touches.
     pub force: f64,
-    /// What is borne: friction can grow with it.
+    /// What is borne beside the weight of the law: friction can grow with it.
     pub borne: f64,
 }
 
@@ -35,7 +35,8 @@ pub fn after_coupled_row(
     }
     let from_play = flank * 0.5 * link.play * link.stiffness;
     let under = |position: f64, speed: f64| {
-        let against = if law.friction.acts() { direction * law.friction.level(speed.abs(), borne) } else { 0.0 };
+        let level = |borne| law.friction.level(speed.abs(), law.borne(borne, position));
+        let against = if law.friction.acts() { direction * level(borne) } else { 0.0 };
         pair.coupled.after(state, [effort - law.load(position) - against + from_play, -force - from_play])
     };
     let goes_on = |after: &[f64; STATES]| {
@@ -133,7 +134,7 @@ mod tests {
         let (law, link) = pair_law(300_000.0);
         let link = Link { damping: 4.0, play: 1e-3, load_viscous: 1.0, ..link };
         let mut law = DriveLaw { viscous: 2.0, link: Some(link), ..law };
-        (law.friction.coulomb, law.offset) = (3.0, 1.5);
+        (law.friction.coulomb, law.weight.constant) = (3.0, 1.5);
         let (row, short) = (Pair::new(&law, &link, [1.0; 2], 1e-3), Pair::new(&law, &link, [1.0; 2], 1e-6));
         assert!(row.substeps > 4 && short.substeps == 1);
         let start = [0.61e-3, 0.2, 0.0, 0.19];

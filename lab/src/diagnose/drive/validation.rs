@@ -1,6 +1,7 @@
 //! Which terms stand: those that rows confirm which their values were not fitted to (cross-validation), whose gain is more than what
 //! innovations that remember would give to a term that is not there, and whose values the recordings determine.
 
+use super::candidates::simpler;
 use super::criteria::{COMPARISONS, LEAST_GAIN, LEAST_GAIN_PER_VALUE, LEAST_HELD_OUT_SHARE};
 use super::fit::Fit;
 use super::held_out::{Folds, HeldOut, rms};
@@ -67,14 +68,21 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
             .zip(&told)
             .map(|((less, _), at)| RobustRatio::of(&fit, less, gain(less), *at, &uncertainty))
             .collect();
-        let is_undetermined =
-            |at: usize| fit.model.terms[at].is_undetermined(&uncertainty.ends[fit.model.values_of(at)], &search.scales);
+        let is_undetermined = |at: usize| {
+            let (term, own) = (&fit.model.terms[at], fit.model.values_of(at));
+            term.is_undetermined(&uncertainty.ends[own.clone()], &search.scales)
+                || term.is_at_end(&fit.values[own], &search.scales)
+        };
         let weakest = (0..told.len())
             .filter(|nth| !comparisons[*nth].is_decisive() || is_undetermined(told[*nth]))
             .filter(|nth| !carries(&fit.model.terms[told[*nth]]))
             .min_by(|a, b| comparisons[*a].gain.total_cmp(&comparisons[*b].gain));
         if let Some(nth) = weakest {
-            fit = without[nth].0.clone();
+            fit = if comparisons[nth].is_decisive() {
+                determined(search, &fit, told[nth])
+            } else {
+                without[nth].0.clone()
+            };
             continue;
         }
         let named = without.iter().zip(&comparisons).enumerate().map(|(nth, (without, ratio))| NamedTerm {
@@ -92,6 +100,14 @@ pub fn validated(search: &Search<'_>, folds: &Folds, common: &Noise, mut fit: Fi
 fn without(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
     let (model, values) = fit.model.without(at, &fit.values);
     search.lessened(fit, model, values)
+}
+
+/// `fit` with the simpler law in the place of term `at`, whose values the recordings do not determine, refitted; without it, where none is simpler.
+fn determined(search: &Search<'_>, fit: &Fit, at: usize) -> Fit {
+    match simpler(fit, at).into_iter().next() {
+        Some((model, values)) => search.lessened(fit, model, values),
+        None => without(search, fit, at),
+    }
 }
 
 /// Log likelihood of `less`, its values refitted, by the noise of `more`, nats: the dispersion of a quasi-likelihood is the larger law's (R. W. M.
@@ -157,6 +173,22 @@ mod tests {
         // Of nothing the maxima of both likelihoods differ by less than a nat.
         let (own, by_noise) = gains(0.0);
         assert!((by_noise - own).abs() < 1.0, "{own} {by_noise}");
+    }
+
+    /// Dry friction of 0.3 N and no more: an exponent that may be any does not take it along.
+    #[test]
+    fn in_the_place_of_a_law_that_is_not_determined_a_simpler_one_stands() {
+        let drive = TestDrive { coulomb: 0.3, ..TestDrive::PLAIN };
+        let trials = [drive.trial(4.0, 6)];
+        let search = search_over(&trials, &drive);
+        let sublinear = Fit {
+            model: search.nominal.model.with(Term::Sublinear),
+            values: [search.nominal.values.as_slice(), &[0.3, 0.2]].concat(),
+            ..search.nominal.clone()
+        };
+        assert_eq!(determined(&search, &sublinear, 0).model.terms, [Term::Coulomb]);
+        let rubs = with_dry_friction(&search);
+        assert_eq!(determined(&search, &rubs, 0).model.terms, []);
     }
 
     /// Forty nats for one value, where twenty rows say the same and where each says its own: two nats are chance.

@@ -2,6 +2,7 @@
 
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha12Rng;
+use rand_distr::{Distribution as _, StandardNormal};
 
 use super::*;
 use crate::diagnose::drive::named::named;
@@ -359,4 +360,91 @@ fn a_name_that_was_found_to_be_something_else_is_not_taken_up_from_a_part_of_the
     let rivalled = ["effort_saturation"];
     assert!(has_none(&["gravity_load"], &rivalled) && has_none(&["effort_saturation"], &[]));
     assert!(!has_none(&["effort_saturation", "gravity_load"], &rivalled));
+}
+
+/// An arm of 0.2 kg m^2 behind a gear: a weight of 12 N m where it is level, 1.5 N m of dry friction and a tenth of the weight besides. Its
+/// controller keeps the speed, and `texture` of the friction, N m, that comes and goes within a twentieth of a second, is answered by its torque.
+#[derive(Clone, Copy)]
+struct GearedArm {
+    load_coefficient: f64,
+    texture: f64,
+}
+
+impl GearedArm {
+    const INERTIA: f64 = 0.2;
+    const WEIGHT: f64 = 12.0;
+    const COULOMB: f64 = 1.5;
+
+    /// 8 s at 500 Hz along `reference`, its noise drawn from `seed`.
+    fn trial(&self, seed: u64, reference: impl Fn(f64) -> f64) -> DriveTrial {
+        const PERIOD_S: f64 = 2e-3;
+        const STEPS: usize = 20;
+        const ROWS: usize = 4000;
+        let mut rng = ChaCha12Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let step = PERIOD_S / STEPS as f64;
+        let (mut angle, mut speed) = (reference(0.0), (reference(step) - reference(0.0)) / step);
+        let (mut integral, mut texture) = (Self::WEIGHT * angle.cos(), 0.0);
+        let (mut time, mut position, mut torque) = (Vec::new(), Vec::new(), Vec::new());
+        for row in 0..ROWS {
+            let t = PERIOD_S * row as f64;
+            let wanted = (reference(t + PERIOD_S) - reference(t)) / PERIOD_S;
+            let late = 20.0 * (reference(t) - angle) + wanted - speed;
+            integral += 1500.0 * late * PERIOD_S;
+            let effort = 40.0 * late + integral;
+            time.push(t);
+            position.push(angle + 2e-5 * normal());
+            torque.push(effort);
+            let kept = (-PERIOD_S / 0.05f64).exp();
+            texture = kept * texture + (1.0 - kept * kept).sqrt() * self.texture * normal();
+            for _ in 0..STEPS {
+                let weight = Self::WEIGHT * angle.cos();
+                let holds = (Self::COULOMB + self.load_coefficient * weight.abs() + texture).max(0.0);
+                let free = speed + step / Self::INERTIA * (effort - weight - 0.3 * speed);
+                let held = step * holds / Self::INERTIA;
+                speed = if free.abs() <= held { 0.0 } else { free - held * free.signum() };
+                angle += step * speed;
+            }
+        }
+        DriveTrial::new(format!("arm-{seed}.csv"), time, &position, torque, None, 1)
+    }
+}
+
+/// Weight and friction are those of a robot's shoulder that swings about the level: friction is more where the weight is.
+#[test]
+fn friction_grows_with_the_weight_that_the_axis_carries() {
+    let names = |load_coefficient: f64| {
+        let arm = GearedArm { load_coefficient, texture: 0.0 };
+        let swing = |t: f64| 1.2 * (1.3 * t).sin() + 0.2 * (4.1 * t).cos();
+        let rig = NominalDrive { is_rotary: true, resolution: 1e-5, ..nominal(GearedArm::INERTIA, 0.3) };
+        identify(vec![arm.trial(1, swing), arm.trial(2, swing)], &rig, 1, &|_| {}).expect("a drive that moves")
+    };
+    let outcome = names(0.1);
+    let mut found = outcome.chosen.model.names();
+    found.sort_unstable();
+    assert_eq!(found, ["coulomb_friction", "gravity_load", "load_dependent_friction"]);
+    let at = outcome.chosen.model.terms.iter().position(|term| *term == Term::LoadFriction).expect("it is there");
+    let own = outcome.chosen.model.values_of(at).start;
+    let [low, high] = outcome.intervals[own];
+    assert!((outcome.chosen.values[own] - 0.1).abs() < 0.005 && low < 0.1 && 0.1 < high, "{low} {high}");
+    let mut found = names(0.0).chosen.model.names();
+    found.sort_unstable();
+    assert_eq!(found, ["coulomb_friction", "gravity_load"]);
+}
+
+/// Passes at one speed each: nothing accelerates but by what the friction's texture leaves to the controller.
+#[test]
+fn where_the_motion_does_not_tell_the_inertia_that_of_the_rig_file_holds() {
+    let arm = GearedArm { load_coefficient: 0.0, texture: 0.3 };
+    let pass = |speed: f64| move |t: f64| speed * (t - 4.0);
+    let rig = NominalDrive { is_rotary: true, resolution: 1e-5, ..nominal(GearedArm::INERTIA, 0.3) };
+    let trials = [0.3, -0.3, 0.15, -0.15].iter().zip(1..).map(|(speed, seed)| arm.trial(seed, pass(*speed)));
+    let outcome = identify(trials.collect(), &rig, 1, &|_| {}).expect("a drive that moves");
+    let mut found = outcome.chosen.model.names();
+    found.sort_unstable();
+    assert_eq!(found, ["coulomb_friction", "gravity_load"]);
+    // It is held, and told to be known no better than before.
+    assert_eq!(outcome.chosen.values[index::INERTIA], GearedArm::INERTIA);
+    let [low, high] = outcome.intervals[index::INERTIA];
+    assert!(low < 0.5 * GearedArm::INERTIA && high > 2.0 * GearedArm::INERTIA);
 }
