@@ -3,10 +3,10 @@
 #[path = "check/bench.rs"]
 mod bench;
 
-use bench::{Bench, MINUS, found, has, rotary};
+use bench::{Bench, MINUS, found, has, noise, rotary};
 
 /// Every check by a piece of its sentence.
-const ALL: [&str; 21] = [
+const ALL: [&str; 22] = [
     "in the time column",
     "clock is uneven",
     "differ in rate",
@@ -14,6 +14,7 @@ const ALL: [&str; 21] = [
     "drop-out",
     "leaps by",
     "clips",
+    "holds the force",
     "hung",
     "in every row",
     "falls as the tool goes in",
@@ -89,6 +90,16 @@ fn a_counter_that_is_reset_leaps() {
 fn a_force_sensor_that_ends_early_clips() {
     let ended = |at: f64| Bench::new().force(move |_, force| force.min(at));
     tells("clips", ended(1.5), ended(9.0));
+}
+
+/// Both read no more than 2 N: the one tool stops there and creeps on by 1 mm, the other presses on to 9 mm as quickly as it came.
+#[test]
+fn a_force_that_the_machine_holds_is_told_from_a_sensor_that_ends() {
+    let pressed = |depth: f64| {
+        let points = [(0.0, -3.0), (4.0, depth), (24.0, depth + 1.0), (26.0, -3.0), (28.0, -3.0)];
+        Bench::along(&points, false).force(|row, force| force.min(2.0) + 0.005 * noise(row + 7))
+    };
+    tells("holds the force", pressed(6.6), pressed(9.0));
 }
 
 #[test]

@@ -33,8 +33,8 @@ pub struct Recorded<'a> {
     pub trials: &'a [Recording],
     /// What the sensors leave of each trial.
     pub figures: &'a [Figures],
-    /// Whether the tool moves at one speed each way and never stays at a depth.
-    pub is_one_speed: bool,
+    /// What the checks found of the motion in contact.
+    pub circumstances: Circumstances,
     /// Of the bootstrap's draws.
     pub seed: u64,
     /// Told how it goes.
@@ -160,7 +160,7 @@ impl Recorded<'_> {
         let is_recorded = contact::prepare::is_recorded(&rig, self.trials);
         let Some(nominal) = contact::prepare::nominal(&rig, known).filter(|_| is_recorded) else { return Ok(None) };
         let [fine, coarse] = contact::prepare::trials(self.trials, self.figures);
-        let circumstances = Circumstances { is_one_speed: self.is_one_speed, refuted: with_kin(refuted) };
+        let circumstances = Circumstances { refuted: with_kin(refuted), ..self.circumstances.clone() };
         Ok(contact::identification::identify(fine, &coarse, &nominal, circumstances, self.say))
     }
 
@@ -218,7 +218,7 @@ fn is_told(contact: &contact::outcome::Outcome, name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Recorded, with_kin};
+    use super::{Circumstances, Recorded, with_kin};
     use crate::recording::Recording;
     use crate::rig::Rig;
 
@@ -247,7 +247,7 @@ mod tests {
             origin: "rig.toml",
             trials: &trials,
             figures: &figures,
-            is_one_speed: false,
+            circumstances: Circumstances::default(),
             seed: 1,
             say: &|_| {},
         };

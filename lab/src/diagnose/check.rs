@@ -11,6 +11,7 @@ mod contact;
 mod drive;
 mod excitation;
 mod finding;
+mod held_force;
 mod position_steps;
 mod ranked_finding;
 mod stuck_channel;
@@ -42,6 +43,7 @@ pub fn check(rig: &Rig, recordings: &[Recording], raws: &[UniformTrial]) -> Vec<
         notes.extend(clock::faults(view));
         notes.extend(position_steps::jumps(view));
         notes.extend(position_steps::coarse(rig, view));
+        notes.extend(held_force::held(rig, view));
     }
     notes.extend(contact::reached(rig, &views));
     notes.extend(clock::together(rig, &views));

@@ -14,6 +14,7 @@ pub fn all() -> impl Iterator<Item = Threshold> {
         check_contact::ALL,
         check_drive::ALL,
         check_excitation::ALL,
+        check_held_force::ALL,
         check_position_steps::ALL,
         check_stuck_channel::ALL,
         check_units::ALL,
@@ -140,6 +141,20 @@ pub mod check_excitation {
     ///
     /// Unit: rows; chosen.
     pub const MIN_CONTACT_ROWS: usize = 20;
+}
+
+/// Of `check/held_force`.
+pub mod check_held_force {
+    use crate::threshold::thresholds;
+
+    thresholds! { "check_held_force";
+        /// Part of a force's range within which it is held.
+        HELD_BAND = 0.01, "1", chosen;
+        /// Bands by which the force would have risen over the way that the tool creeps on.
+        HELD_RISE = 3.0, "1", chosen;
+        /// Part of the speed with which the tool came, above which it does not creep.
+        MOST_CREEP_SPEED = 0.3, "1", chosen;
+    }
 }
 
 /// Of `check/position_steps`.

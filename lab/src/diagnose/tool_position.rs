@@ -38,7 +38,8 @@ pub fn told_at_the_tool(recorded: &Recorded<'_>, channels: Channels) -> Result<(
     }
     (recorded.say)("the contact: at the tool, behind the link");
     let trials = at_the_tool(told, recorded.trials);
-    let anew = Recorded { trials: &trials, ..*recorded }.identified()?.contact;
+    let anew =
+        Recorded { trials: &trials, circumstances: recorded.circumstances.clone(), ..*recorded }.identified()?.contact;
     let left = |contact: &contact::outcome::Outcome| rms(&contact.residuals[2]);
     let is_whole =
         |contact: &contact::outcome::Outcome| matches!(contact.verdict, Verdict::NoMismatch | Verdict::Parameters);

@@ -80,15 +80,18 @@ pub(super) fn believed(search: &Search<'_>, folds: &Folds, mut fit: Fit) -> (Fit
         let named = without.iter().enumerate().map(|(nth, without)| NamedTerm {
             at: first + nth,
             held_out_share: share(without.energy).clamp(0.0, 1.0),
-            p_value: (COMPARISONS
-                * likelihood_ratio_p(search.worth(&fit, &without.law).gain, added_values(&fit, &without.law)))
-            .min(1.0)
-            .shown(),
+            p_value: (COMPARISONS * chance(search, &fit, &without.law)).min(1.0).shown(),
             without: without.rms,
         });
         let named = named.collect();
         return (fit, held, named);
     }
+}
+
+/// Probability that noise makes `more` as much likelier than `less`, and where that is by a line, that it is as loud as that.
+fn chance(search: &Search<'_>, more: &Fit, less: &Fit) -> f64 {
+    let of_line = search.chance_of_line(more, less);
+    of_line.unwrap_or_else(|| likelihood_ratio_p(search.worth(more, less).gain, added_values(more, less)))
 }
 
 /// The effect that gains least over `without` it, beside a zero that wanders, where that is less than any is told for: what follows such a zero

@@ -44,7 +44,7 @@ impl Search<'_> {
     /// from other surfaces, because what is missing bends the nominal values, and what a motion can show depends on where the contact
     /// begins.
     pub(super) fn promises(&self, base: &Fit, asked: &(dyn Fn(&Term) -> bool + Sync)) -> Vec<(Promise, Fit)> {
-        let asked = |term: &Term| asked(term) && !self.circumstances.refuted.contains(&term.name());
+        let asked = |term: &Term| asked(term) && self.circumstances.allow(term.name());
         // Squares of means are compared with squares of means: `base` may have been fitted on every row.
         let base = &self.coarse.fit_holding(&base.model, &base.values, Effort::NONE, &|_| true);
         let mut bases = vec![base.clone()];

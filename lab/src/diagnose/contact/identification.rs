@@ -41,7 +41,10 @@ pub fn identify(
     let given = Given { rig, circumstances: &circumstances, say };
     let alone = given.searched(&trials, coarse);
     let (search, chosen) = &alone;
-    let force = ParasiticForce::found(&search.data, [&chosen.fit, &search.nominal], rig);
+    // A law that lacks physics can put the surface behind all that touches it.
+    let force = (!given.circumstances.is_never_free)
+        .then(|| ParasiticForce::found(&search.data, [&chosen.fit, &search.nominal], rig))
+        .flatten();
     let law = chosen.fit.clone();
     let outcome = given.concluded(alone);
     // Effort that couples into the reading is there in free motion, too, and is known by the effort.

@@ -17,7 +17,7 @@ impl Search<'_> {
         let lacking = |term: &Term| {
             !term.effect.lines().is_empty()
                 && fit.model.times(term.name()) == 0
-                && !self.circumstances.refuted.contains(&term.name())
+                && self.circumstances.allow(term.name())
         };
         let excitation = fit.model.scales.excitation(
             self.data.trials,
@@ -44,10 +44,20 @@ impl Search<'_> {
 
     /// Whether a line is all that `more` has beyond `less`, and is one by the spectrum around it; `None` where it has something else.
     pub(super) fn is_worth_as_a_line(&self, more: &Fit, less: &Fit) -> Option<bool> {
+        let nats = self.nats_of_line(more, less)?;
+        Some(nats > LEAST_GAIN.value() && self.is_loud_enough(more, less))
+    }
+
+    /// Probability that noise is somewhere about the line as loud as the line is that `more` has beyond `less`; `None` where it has something else.
+    pub(super) fn chance_of_line(&self, more: &Fit, less: &Fit) -> Option<f64> {
+        self.nats_of_line(more, less).map(|nats| (-nats).exp().min(1.0))
+    }
+
+    /// Logarithm of one over that probability.
+    fn nats_of_line(&self, more: &Fit, less: &Fit) -> Option<f64> {
         let frequency = line_beyond(more, less)?;
         let rest = self.data.weighted_residual(&less.model, &less.values);
-        let nats = line_nats(&self.data, &rest, frequency);
-        Some(nats > LEAST_GAIN + self.line_trials(frequency).ln() && self.is_loud_enough(more, less))
+        Some(line_nats(&self.data, &rest, frequency) - self.line_trials(frequency).ln())
     }
 
     /// Whether what `more` takes of `less` is a part of the noise that matters.
@@ -95,6 +105,8 @@ mod tests {
         let trials = || humming(contact, frequency, size);
         let outcome =
             identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        // However little of the force it is, it is told by how it stands out of the spectrum.
+        assert!(outcome.named.iter().all(|named| named.p_value < 1e-3), "{:?}", outcome.named);
         outcome.chosen.model.names(outcome.known_terms)
     }
 

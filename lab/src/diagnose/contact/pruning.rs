@@ -76,13 +76,13 @@ impl Search<'_> {
     }
 
     /// Model and values of `fit` with the effect in the place of term `at` that this is where one of its values is zero; `None` where there is none,
-    /// where the model has that effect already, or where the drive speaks against it.
+    /// where the model has that effect already, or where the circumstances speak against it.
     fn with_special_case(&self, fit: &Fit, at: usize) -> Option<(ContactModel, Vec<f64>)> {
         let term = &fit.model.terms[at];
         let start = fit.model.first_value_of(at);
         let own = start..start + fit.model.count_of(term);
         let (name, form, special) = term.effect.special_case(term.form, &fit.values[own.clone()])?;
-        if fit.model.times(name) > 0 || self.circumstances.refuted.contains(&name) {
+        if fit.model.times(name) > 0 || !self.circumstances.allow(name) {
             return None;
         }
         let mut model = fit.model.clone();
