@@ -35,6 +35,7 @@ use anyhow::{Result, bail};
 
 use channels::{Channels, Recorded};
 pub use command::{DiagnoseArgs, run};
+use contact::circumstances::Circumstances;
 use signals::pauses;
 pub use signals::prepare::sensed;
 
@@ -89,9 +90,8 @@ pub fn diagnose(
     let uniform_trials = sensed(rig, origin, trials)?;
     let figures: Vec<Figures> = uniform_trials.iter().map(|trial| trial.figures).collect();
     let findings = check::check(rig, trials, &uniform_trials);
-    // Held at one depth a memory fades and a loop does not.
-    let is_one_speed = ["one_speed", "no_hold"].iter().all(|code| findings.iter().any(|finding| finding.code == *code));
-    let recorded = Recorded { rig, origin, trials, figures: &figures, is_one_speed, seed, say };
+    let circumstances = Circumstances::of(|code| findings.iter().any(|finding| finding.code == code));
+    let recorded = Recorded { rig, origin, trials, figures: &figures, circumstances, seed, say };
     let (mut channels, at_the_tool) = tool_position::told_at_the_tool(&recorded, recorded.identified()?)?;
     channels.tell_what_is_beyond_the_sensor();
     let felt = channels.finding();
