@@ -78,7 +78,7 @@ thresholds! { "drive";
     /// Factor by which refitted values have to lessen what is missing before they are told as wrong.
     VALUES_MATTER = 1.15, "1", chosen;
     /// Least part of the recorded effort that acts under an effort that changes with time. Chosen: half, as of a motor that loses half of its torque;
-    /// by a factor of a seventh nothing was left of an arm that turned at one speed against its weight.
+    /// an arm that turned at one speed against its weight was explained by less.
     LEAST_ACTING_EFFORT = 0.5, "1", chosen;
     /// Factor between the rig file's inertia and one that is still believed to be this drive's. Chosen: without a bound a law that lacks
     /// a weight explains a pendulum by an inertia that hardly moves.

@@ -108,7 +108,7 @@ pub struct DriveLaw {
     pub course: Course,
     /// Half of the difference between friction forward and backward, N or N m.
     pub offset: f64,
-    /// Friction can grow with it.
+    /// What the axis carries; dry friction can grow with it.
     pub weight: Weight,
     /// Cogging.
     pub ripples: Vec<Periodic>,
