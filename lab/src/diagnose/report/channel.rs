@@ -16,11 +16,13 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    /// Share of the power above the expected noise that refitted values leave, which a law that leaves `left` takes away: the one
-    /// measure of the answer and of whatever is compared with it. From 0 to 1; 0 where refitted values leave no more than noise.
+    /// Share of the power above the noise that refitted values leave, which a law that leaves `left` takes away: the one measure of the answer and of
+    /// whatever is compared with it. From 0 to 1; 0 where refitted values leave no more than noise. The noise is what is expected, and no more than the
+    /// answer leaves: of rows that no fit saw no law takes noise away.
     pub(super) fn share_taken(&self, left: f64) -> f64 {
-        let [_, refitted, _] = self.of_laws;
-        let above = refitted.powi(2) - self.expected_noise.powi(2);
+        let [_, refitted, improved] = self.of_laws;
+        let noise = self.expected_noise.min(improved);
+        let above = refitted.powi(2) - noise.powi(2);
         if above > 0.0 { ((refitted.powi(2) - left.powi(2)) / above).clamp(0.0, 1.0) } else { 0.0 }
     }
 
@@ -146,6 +148,9 @@ mod tests {
         assert_eq!(residuals.quality("force", "N", 1.0).explained_share, 0.796_875);
         assert_eq!(residuals.share_taken(3.5), 0.796_875);
         assert_eq!((residuals.share_taken(6.0), residuals.share_taken(1.0)), (0.0, 1.0));
-        assert_eq!(Residuals { expected_noise: 5.0, ..residuals }.share_taken(3.0), 0.0);
+        assert_eq!(Residuals { of_laws: [7.0, 5.0, 5.0], expected_noise: 5.0 }.share_taken(3.0), 0.0);
+        // More noise is expected than the answer leaves: there was no more than that, and the answer takes all the rest.
+        let louder = Residuals { expected_noise: 6.0, ..residuals };
+        assert_eq!((louder.share_taken(3.5), louder.share_of(4.0, 3.5)), (1.0, 1.0));
     }
 }
