@@ -150,6 +150,10 @@ pub mod check_held_force {
     thresholds! { "check_held_force";
         /// Part of a force's range within which it is held.
         HELD_BAND = 0.01, "1", chosen;
+        /// Deviations of the smoothed noise from peak to valley of many rows, by which the band is wider.
+        NOISE_RANGE = 8.0, "1", chosen;
+        /// Part of a force's range over which the way to it is looked at.
+        WAY_THERE = 0.2, "1", chosen;
         /// Bands by which the force would have risen over the way that the tool creeps on.
         HELD_RISE = 3.0, "1", chosen;
         /// Part of the speed with which the tool came, above which it does not creep.

@@ -3,7 +3,7 @@
 use super::checked_trial::{CheckedTrial, range};
 use super::ranked_finding::RankedFinding;
 use super::wording::quantity;
-use crate::diagnose::thresholds::check_held_force::{HELD_BAND, HELD_RISE, MOST_CREEP_SPEED};
+use crate::diagnose::thresholds::check_held_force::{HELD_BAND, HELD_RISE, MOST_CREEP_SPEED, NOISE_RANGE, WAY_THERE};
 use crate::rig::Rig;
 
 /// A force that stays while the tool, which pressed quickly until then, creeps on.
@@ -36,13 +36,12 @@ impl Hold {
     fn of(force: &[f64], view: &CheckedTrial<'_>) -> Option<Self> {
         let greatest = force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let range = range(force);
-        // From peak to valley, noise of many rows.
-        let band = (HELD_BAND * range).value() + 8.0 * view.noise[2];
+        let band = (HELD_BAND * range).value() + (NOISE_RANGE * view.noise[2]).value();
         let first = force.iter().position(|force| *force >= greatest - band)?;
         // Once there it may waver about the band's end.
         let stays = force[first..].iter().take_while(|force| **force >= greatest - 2.0 * band).count();
         let last = first + stays - 1;
-        let before = force[..first].iter().rposition(|force| *force < greatest - 0.2 * range)?;
+        let before = force[..first].iter().rposition(|force| *force < greatest - (WAY_THERE * range).value())?;
         let deepest = view.depth[first..=last].iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let [way, creep] = [view.depth[first] - view.depth[before], deepest - view.depth[first]];
         let slope = (force[first] - force[before]) / way;
