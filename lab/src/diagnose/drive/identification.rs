@@ -47,8 +47,8 @@ pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dy
     Some(first)
 }
 
-/// What is found where the inertia is that of the rig file, known no better than before, if that names more than `first`, or leaves less unexplained; `None`
-/// where the motion tells the inertia. A controller that keeps the speed answers what hinders the motion with effort, and nothing accelerates: a law of
+/// What is found where the inertia is that of the rig file, known no better than before, if that names something where `first` names nothing, or explains the
+/// recordings; `None` where the motion tells the inertia. A controller that keeps the speed answers what hinders the motion with effort, and nothing accelerates: a law of
 /// white disturbances takes that for an inertia as large as its search allows.
 fn with_given_inertia(first: &Outcome, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
     if first.chosen.model.has_believed_inertia(&first.chosen.values) {
@@ -171,12 +171,9 @@ fn search_from<'a>(data: Data<'a>, rig: &NominalDrive, nominal: Fit) -> Search<'
     let scales = nominal.model.scales;
     let crossing = nominal.noise.crossing_hz(scales.period_s, nominal.values[index::INERTIA]);
     let band_hz = crossing.clamp(LOWEST_BAND_HZ.value().min(0.1 / scales.period_s), 0.4 / scales.period_s);
-    let sides = match rig.encoder {
-        // How two bodies share an inertia is not told, either.
-        _ if scales.holds_inertia() => Vec::new(),
-        Some(side) => vec![side],
-        None => vec![Side::Motor, Side::Load],
-    };
+    // Where the inertia is not told, nor is how two bodies share it.
+    let either = if scales.holds_inertia() { Vec::new() } else { vec![Side::Motor, Side::Load] };
+    let sides = either.into_iter().filter(|side| rig.encoder.is_none_or(|known| known == *side)).collect();
     Search { data, scales, nominal, band_hz, sides, is_asked: false, effort_noise_density: data.effort_noise_density() }
 }
 
