@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::candidates::is_likelier;
 use super::criteria::{COARSER, LOWEST_BAND_HZ, MOST_COARSE};
 use super::denoised::denoised;
 use super::fit::Fit;
@@ -14,6 +15,7 @@ use super::nominal::{NominalDrive, encoder_variance, missing_under, nominal_fit,
 use super::outcome::Outcome;
 use super::outside_force::outside_forces;
 use super::selection::{Chosen, Search};
+use super::term::Term;
 use super::trial::DriveTrial;
 use crate::diagnose::verdict::Verdict;
 
@@ -25,11 +27,12 @@ use crate::diagnose::verdict::Verdict;
 /// search did, the rig file's is tried in its place.
 #[must_use]
 pub fn identify(trials: Vec<DriveTrial>, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Option<Outcome> {
-    let first = identify_between_pushes(trials, rig, seed, say)?;
-    let scales = first.chosen.model.scales;
-    if let Some(found) = with_given_inertia(&first, rig, seed, say) {
+    let as_they_are = identify_as_they_are(trials, rig, seed, say)?;
+    if let Some(found) = with_given_inertia(&as_they_are, rig, seed, say) {
         return Some(found);
     }
+    let first = between_pushes(as_they_are, rig, seed, say);
+    let scales = first.chosen.model.scales;
     if !first.named.is_empty() || first.verdict != Verdict::Unknown || rms(&first.missing[1]) < scales.effort {
         return Some(first);
     }
@@ -79,19 +82,23 @@ fn identify_between_pushes(
     seed: u64,
     say: &dyn Fn(&str),
 ) -> Option<Outcome> {
-    let first = identify_as_they_are(trials, rig, seed, say)?;
+    identify_as_they_are(trials, rig, seed, say).map(|first| between_pushes(first, rig, seed, say))
+}
+
+/// `first`, or what is found beside stretches in which something else pushes.
+fn between_pushes(first: Outcome, rig: &NominalDrive, seed: u64, say: &dyn Fn(&str)) -> Outcome {
     if !matches!(first.verdict, Verdict::Unknown | Verdict::PartlyExplained) {
-        return Some(first);
+        return first;
     }
     let values = &first.chosen.values;
     let law = DriveLaw {
         effort_averaging: first.chosen.model.law(values).effort_averaging,
         ..DriveLaw::nominal(rig.inertia, rig.viscous, values[index::DELAY])
     };
-    let missing = missing_under(&first.trials, rig)?;
+    let Some(missing) = missing_under(&first.trials, rig) else { return first };
     let stretches = outside_forces(&first.trials, &missing, &law, &first.chosen.model.scales);
     if stretches.is_empty() {
-        return Some(first);
+        return first;
     }
     say("the drive: without the stretches in which something else pushes");
     let quiet = first.trials.iter().enumerate().map(|(number, trial)| {
@@ -100,13 +107,12 @@ fn identify_between_pushes(
     });
     let is_found = |found: &Outcome| !found.named.is_empty() && has_none(&found.chosen.model.names(), &first.rivalled);
     let Some(second) = identify_as_they_are(quiet.collect(), rig, seed, say).filter(is_found) else {
-        return Some(first);
+        return first;
     };
-    let whole = identify_by(first.trials, rig, seed, say, &|search| search.fitted(&second.chosen));
-    Some(match whole {
+    match identify_by(first.trials, rig, seed, say, &|search| search.fitted(&second.chosen)) {
         Some(whole) if whole.verdict == Verdict::Explained => whole,
         _ => Outcome { verdict: Verdict::PartlyExplained, outside_forces: stretches, ..second },
-    })
+    }
 }
 
 /// Whether none of `names` is one of the `rivalled`, which were found to be something else.
@@ -159,12 +165,38 @@ fn identify_by(
         let search = Search { is_asked: true, ..search_from(data, rig, punctual) };
         search.is_worth(&lagged, &search.nominal).then_some(search)
     });
-    let search = lag.unwrap_or_else(|| search_from(data, rig, nominal));
-    let chosen = chosen(&search);
+    let mut search = lag.unwrap_or_else(|| search_from(data, rig, nominal));
+    let mut found = chosen(&search);
+    if search.is_lagged(&found.fit)
+        && let Some([punctual, _]) = punctual_and_lagged(&data, rig, &search.nominal, encoder_variance)
+    {
+        // What else is missing hid that the effort is lagged and not late.
+        search = Search { is_asked: true, ..search_from(data, rig, punctual) };
+        found = chosen(&search);
+    }
     say("the drive: what is left");
-    let mut outcome = judged(&search, chosen, seed);
+    let mut outcome = judged(&search, found, seed);
     outcome.trials = denoised.unwrap_or(trials);
     Some(outcome)
+}
+
+impl Search<'_> {
+    /// Whether the effort of `fit`, which is later than a recorded row, is lagged rather than late: with a lag in the place of the delay beyond that row its terms are
+    /// likelier, and the lag is worth its value beside a punctual effort.
+    fn is_lagged(&self, fit: &Fit) -> bool {
+        let recorded = self.data.trials[0].recorded_period_s;
+        let is_late = fit.values[index::DELAY] > recorded && fit.model != self.nominal.model;
+        if !is_late || fit.model.has("effort_lag") || fit.model.has_link() || self.scales.holds_inertia() {
+            return false;
+        }
+        let mut start = fit.clone();
+        start.model.scales.latest_effort_s = recorded;
+        let punctual = self.polished(&start);
+        start.model.terms.push(Term::EffortLag);
+        start.values.push(fit.values[index::DELAY]);
+        let lagged = self.polished(&start);
+        is_likelier(&lagged, fit) && self.is_worth(&lagged, &punctual)
+    }
 }
 
 fn search_from<'a>(data: Data<'a>, rig: &NominalDrive, nominal: Fit) -> Search<'a> {

@@ -19,9 +19,11 @@ use super::trial::DriveTrial;
 /// Rows of the stretch on which starts are compared.
 const STRETCH_ROWS: usize = 5000;
 
-/// Frequencies of the link under all of the inertia that are tried, Hz; only those that the rows can follow.
+/// Frequencies of the link under all of the inertia that are tried, Hz; only those that the rows can follow. Of a play, whose likelihood has the more maxima, so many
+/// of the fastest: a recording of few rows a second is of a large or a soft machine.
 const COMPLIANCE_HZ: [f64; 5] = [6.0, 15.0, 40.0, 100.0, 250.0];
-const PLAY_HZ: [f64; 3] = [25.0, 60.0, 150.0];
+const PLAY_HZ: [f64; 6] = [150.0, 60.0, 25.0, 8.0, 3.0, 1.0];
+const FLANKS: usize = 3;
 const FASTEST_PER_ROW: f64 = 0.3;
 
 /// The narrowest gap that is tried, in steps of the encoder, the factor to the next, and the widest, as a part of the travel.
@@ -47,7 +49,7 @@ const QUIET: f64 = 1e-3;
 const PLAY_STARTS: [(f64, f64); 2] = [(QUIET, 0.0), (QUIETEST, 0.5)];
 const QUIETEST: f64 = 1e-4;
 
-/// Plays that are led on by steps before their slopes are searched along.
+/// Plays of each kind that are led on by steps before their slopes are searched along.
 const LED: usize = 3;
 
 /// Starts that are followed to their end, and the turns that takes.
@@ -85,17 +87,25 @@ fn found_on(data: &Data<'_>, base: &Fit, side: Side) -> Vec<Fit> {
     best
 }
 
-/// `starts`, and the likeliest of their quietest plays led on to the likeliest around each.
+/// `starts`, and plays among them led on to the likeliest around each: the likeliest of the quietest, and the likeliest of all under the noise that suits each best.
 fn led(data: &Data<'_>, starts: Vec<Fit>) -> Vec<Fit> {
-    let mut others = starts;
-    let is_play = |fit: &&Fit| fit.model.has("backlash");
-    let quietest = others.iter().filter(is_play).map(|fit| fit.noise.ln_disturbance).fold(f64::INFINITY, f64::min);
-    let is_quiet = |fit: &&Fit| fit.noise.ln_disturbance <= quietest;
-    let mut plays: Vec<Fit> = others.iter().filter(is_play).filter(is_quiet).cloned().collect();
+    let plays: Vec<Fit> = starts.iter().filter(|fit| fit.model.has("backlash")).cloned().collect();
+    let quietest = plays.iter().map(|fit| fit.noise.ln_disturbance).fold(f64::INFINITY, f64::min);
+    let quiet = plays.iter().filter(|fit| fit.noise.ln_disturbance <= quietest).cloned();
+    let suited = plays.clone().into_par_iter().map(|mut fit| {
+        fit.log_likelihood = search_noise(data, &fit.model, &fit.values, &mut fit.noise);
+        fit
+    });
+    let chosen = [likeliest(quiet.collect()), likeliest(suited.collect())].concat();
+    let led: Vec<Fit> = chosen.into_par_iter().map(|play| likelier_around(data, &play)).collect();
+    [starts, led].concat()
+}
+
+/// The [`LED`] likeliest of `plays`.
+fn likeliest(mut plays: Vec<Fit>) -> Vec<Fit> {
     plays.sort_by(|a, b| b.log_likelihood.total_cmp(&a.log_likelihood));
     plays.truncate(LED);
-    others.extend(plays.into_par_iter().map(|play| likelier_around(data, &play)).collect::<Vec<_>>());
-    others
+    plays
 }
 
 /// `play` with no less of a disturbance than a search for one begins with, beside what `rigid` leaves: with none at all its load flies on from the
@@ -198,14 +208,14 @@ pub fn likelier_around(data: &Data<'_>, play: &Fit) -> Fit {
 /// Every link and play to begin with, with the encoder on `side`.
 fn starts(data: &Data<'_>, base: &Fit, side: Side) -> Vec<Fit> {
     let scales: &Scales = &base.model.scales;
-    let is_slow_enough = |hz: f64| hz * scales.period_s < FASTEST_PER_ROW;
+    let is_slow_enough = |hz: &f64| hz * scales.period_s < FASTEST_PER_ROW;
     let mut all = Vec::new();
-    for hz in COMPLIANCE_HZ.into_iter().filter(|hz| is_slow_enough(*hz)) {
+    for hz in COMPLIANCE_HZ.into_iter().filter(is_slow_enough) {
         let own = link(base, hz, COMPLIANCE_DAMPING).to_vec();
         all.push(begun(base, Term::Compliance(side), own.clone(), 1.0));
         all.push(begun(base, Term::Compliance(side), own, QUIET));
     }
-    let flanks: Vec<f64> = PLAY_HZ.into_iter().filter(|hz| is_slow_enough(*hz)).collect();
+    let flanks: Vec<f64> = PLAY_HZ.into_iter().filter(is_slow_enough).take(FLANKS).collect();
     if !flanks.is_empty() {
         let gaps: Vec<f64> = gaps(scales).collect();
         for (density, friction_share) in PLAY_STARTS {

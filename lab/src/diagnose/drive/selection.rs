@@ -77,8 +77,7 @@ impl Search<'_> {
                 say(&format!("the drive: {}; two bodies", self.so_far(&best)));
                 link_searches += 1;
                 let found = links::found(&self.data, rigid, &self.disturbance(rigid), &self.sides);
-                let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
-                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest), rigid)));
+                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit), rigid)));
             }
             grown.retain(|fit| !is_at_end(fit) && !hurries(fit, &self.nominal) && are_resolved(fit));
             let grown = distinct(grown);
@@ -156,11 +155,11 @@ impl Search<'_> {
         fit(&self.data, &start.model, &start.values, start.noise, effort)
     }
 
-    /// The same of a link that was looked for on a stretch; a play that is likelier than the `likeliest` rigid law is looked for around
-    /// where that ends, too: all rows hold more strikes than the stretch.
-    fn polished_link(&self, start: &Fit, likeliest: f64) -> Fit {
+    /// The same of a link that was looked for on a stretch; a play is looked for around where that ends, too: all rows hold more strikes than the stretch,
+    /// and one that is wrong by less than a row on the stretch can be the unlikeliest of all laws on the rest.
+    fn polished_link(&self, start: &Fit) -> Fit {
         let fit = self.polished(start);
-        if !fit.model.has("backlash") || fit.log_likelihood < likeliest {
+        if !fit.model.has("backlash") {
             return fit;
         }
         let around = self.polished(&links::likelier_around(&self.data, &links::roused(&fit, &self.nominal)));

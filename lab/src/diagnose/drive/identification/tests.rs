@@ -7,7 +7,7 @@ use rand_distr::{Distribution as _, StandardNormal};
 use super::*;
 use crate::diagnose::drive::named::named;
 use crate::diagnose::drive::term::Term;
-use crate::diagnose::drive::testing::{TestDrive, TestLink, known_load, nominal};
+use crate::diagnose::drive::testing::{TestDrive, TestLink, known_load, nominal, search_over, with_dry_friction};
 
 fn identified(drive: &TestDrive, inertia: f64, viscous: f64, seed: u64) -> Outcome {
     let trials = vec![drive.trial(6.0, seed), drive.trial(6.0, seed + 1)];
@@ -105,6 +105,28 @@ fn a_lag_of_two_rows_is_no_late_recording() {
     assert!((lag / 2e-3 - 1.0).abs() < 0.02, "{lag}");
 }
 
+/// Beside dry friction, whose law has a delay of some rows at first: an effort that lags is told from one that is recorded three rows before it acts.
+#[test]
+fn beside_friction_a_lag_of_three_rows_is_no_late_recording() {
+    const ROWS: usize = 3;
+    let rubs = TestDrive { coulomb: 0.4, ..TestDrive::PLAIN };
+    let lagged = TestDrive { effort_lag_s: ROWS as f64 * 1e-3, ..rubs };
+    let late = |seed: u64| {
+        let DriveTrial { source_time, position, effort, .. } = rubs.trial(6.0, seed);
+        let kept = effort.len() - ROWS;
+        let [time, position] = [source_time, position].map(|column| column[..kept].to_vec());
+        DriveTrial::new(format!("late-{seed}.csv"), time, &position, effort[ROWS..].to_vec(), None, 1)
+    };
+    let is_lagged = |trials: [DriveTrial; 2]| {
+        let search = search_over(&trials, &rubs);
+        let fit = with_dry_friction(&search);
+        assert!(fit.values[index::DELAY] > 2e-3, "{}", fit.values[index::DELAY]);
+        search.is_lagged(&fit)
+    };
+    assert!(is_lagged([lagged.trial(6.0, 83), lagged.trial(6.0, 84)]));
+    assert!(!is_lagged([late(85), late(86)]));
+}
+
 #[test]
 fn a_recording_that_is_late_by_part_of_a_row_is_no_lag() {
     let outcome = identified(&TestDrive { effort_late_s: 0.6e-3, ..TestDrive::PLAIN }, 0.8, 4.0, 91);
@@ -140,6 +162,25 @@ fn a_play_of_two_hundred_encoder_steps_is_named_with_its_gap() {
 }
 
 /// A gear that swings at 25 Hz on its flanks: a search with a louder disturbance ends at another gap, or in a lag of the effort.
+/// The same twenty times as slow, 50 rows a second, as of a crane: its flanks swing at 3.6 Hz.
+#[test]
+fn a_play_of_a_slow_machine_is_named_with_its_gap() {
+    const SLOWER: f64 = 20.0;
+    let link = TestLink { stiffness: 4e4, damping: 30.0, play: 2e-3, load_share: 0.5, friction_share: 0.0 };
+    let quick = TestDrive { link: Some(link), ..TestDrive::PLAIN };
+    let slow = |seed: u64| {
+        let DriveTrial { source_time, position, effort, .. } = quick.trial(6.0, seed);
+        let time = source_time.iter().map(|time| SLOWER * time).collect();
+        let effort = effort.iter().map(|effort| effort / SLOWER.powi(2)).collect();
+        DriveTrial::new(format!("slow-{seed}.csv"), time, &position, effort, None, 1)
+    };
+    let outcome = identify(vec![slow(61), slow(62)], &nominal(0.75, 5.0 / SLOWER), 1, &|_| {}).expect("it moves");
+    assert_eq!(outcome.chosen.model.names(), ["backlash"]);
+    let gap = outcome.chosen.values[outcome.chosen.model.values_of(0).start + 3];
+    // A tenth of the gap is twenty steps of the encoder.
+    assert!((gap / 2e-3 - 1.0).abs() < 0.1, "{gap}");
+}
+
 #[test]
 fn a_play_with_soft_flanks_is_named_with_its_gap_and_its_stiffness() {
     let link = TestLink { stiffness: 4700.0, damping: 2.2, play: 3e-3, load_share: 0.55, friction_share: 0.4 };
