@@ -145,7 +145,9 @@ impl Search<'_> {
         }
         let others = sets.iter().filter(|fit| is_believed(fit) && self.is_worth(fit, &self.nominal));
         let likeliest = others.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
-        likeliest.map_or_else(|| self.nominal.clone(), |fit| self.pruned(fit.clone()))
+        // What is left of it is worth it, too: not what stays for the inertia alone.
+        let pruned = likeliest.map(|fit| self.pruned(fit.clone())).filter(|fit| self.is_worth(fit, &self.nominal));
+        pruned.unwrap_or_else(|| self.nominal.clone())
     }
 
     /// `start` fitted in full.
