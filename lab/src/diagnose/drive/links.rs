@@ -20,10 +20,12 @@ use super::trial::DriveTrial;
 const STRETCH_ROWS: usize = 5000;
 
 /// Frequencies of the link under all of the inertia that are tried, Hz; only those that the rows can follow. Of a play, whose likelihood has the more maxima, so many
-/// of the fastest: a recording of few rows a second is of a large or a soft machine.
+/// of the fastest: a recording of few rows a second is of a large or a soft machine. Seen from the load there is a slowest: beyond flanks that are soft enough the
+/// load goes its own way, and follows any rows.
 const COMPLIANCE_HZ: [f64; 5] = [6.0, 15.0, 40.0, 100.0, 250.0];
 const PLAY_HZ: [f64; 6] = [150.0, 60.0, 25.0, 8.0, 3.0, 1.0];
 const FLANKS: usize = 3;
+const SLOWEST_FROM_LOAD_HZ: f64 = 25.0;
 const FASTEST_PER_ROW: f64 = 0.3;
 
 /// The narrowest gap that is tried, in steps of the encoder, the factor to the next, and the widest, as a part of the travel.
@@ -215,7 +217,8 @@ fn starts(data: &Data<'_>, base: &Fit, side: Side) -> Vec<Fit> {
         all.push(begun(base, Term::Compliance(side), own.clone(), 1.0));
         all.push(begun(base, Term::Compliance(side), own, QUIET));
     }
-    let flanks: Vec<f64> = PLAY_HZ.into_iter().filter(is_slow_enough).take(FLANKS).collect();
+    let is_fast_enough = |hz: &f64| side == Side::Motor || *hz >= SLOWEST_FROM_LOAD_HZ;
+    let flanks: Vec<f64> = PLAY_HZ.into_iter().filter(is_slow_enough).filter(is_fast_enough).take(FLANKS).collect();
     if !flanks.is_empty() {
         let gaps: Vec<f64> = gaps(scales).collect();
         for (density, friction_share) in PLAY_STARTS {

@@ -77,7 +77,8 @@ impl Search<'_> {
                 say(&format!("the drive: {}; two bodies", self.so_far(&best)));
                 link_searches += 1;
                 let found = links::found(&self.data, rigid, &self.disturbance(rigid), &self.sides);
-                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit), rigid)));
+                let likeliest = grown.iter().map(|fit| fit.log_likelihood).fold(f64::NEG_INFINITY, f64::max);
+                grown.extend(found.iter().map(|fit| self.within_ends(self.polished_link(fit, likeliest), rigid)));
             }
             grown.retain(|fit| !is_at_end(fit) && !hurries(fit, &self.nominal) && are_resolved(fit));
             let grown = distinct(grown);
@@ -158,10 +159,12 @@ impl Search<'_> {
     }
 
     /// The same of a link that was looked for on a stretch; a play is looked for around where that ends, too: all rows hold more strikes than the stretch,
-    /// and one that is wrong by less than a row on the stretch can be the unlikeliest of all laws on the rest.
-    fn polished_link(&self, start: &Fit) -> Fit {
+    /// and one that is wrong by less than a row on the stretch can be the unlikeliest of all laws on the rest. One that is seen from its load is so if it is likelier than
+    /// the `likeliest` rigid law: beyond flanks that are soft enough the load goes its own way, and follows any rows.
+    fn polished_link(&self, start: &Fit, likeliest: f64) -> Fit {
         let fit = self.polished(start);
-        if !fit.model.has("backlash") {
+        let goes_its_way = fit.model.terms.contains(&Term::Play(Side::Load)) && fit.log_likelihood < likeliest;
+        if !fit.model.has("backlash") || goes_its_way {
             return fit;
         }
         let around = self.polished(&links::likelier_around(&self.data, &links::roused(&fit, &self.nominal)));
