@@ -160,18 +160,20 @@ fn identify_by(
     let data = denoised.as_ref().map_or(as_recorded, |trials| Data { trials, ..as_recorded });
     let nominal = if denoised.is_some() { nominal_fit(&data, rig, scales, encoder_variance)? } else { nominal };
     // A recording may be late by some rows. Where a lag of the drive is worth its value beside a punctual recording, it is the lag.
-    let lag = punctual_and_lagged(&data, rig, &nominal, encoder_variance).and_then(|[punctual, lagged]| {
-        // It was found already: however little of the effort it is, it is looked for.
-        let search = Search { is_asked: true, ..search_from(data, rig, punctual) };
-        search.is_worth(&lagged, &search.nominal).then_some(search)
+    // It was found already: however little of the effort it is, it is looked for.
+    let asked = |punctual: Fit| Search { is_asked: true, ..search_from(data, rig, punctual) };
+    let late = punctual_and_lagged(&data, rig, &nominal, encoder_variance);
+    let lag = late.as_ref().and_then(|[punctual, lagged]| {
+        let search = asked(punctual.clone());
+        search.is_worth(lagged, &search.nominal).then_some(search)
     });
     let mut search = lag.unwrap_or_else(|| search_from(data, rig, nominal));
     let mut found = chosen(&search);
+    // What else is missing can hide that the effort is lagged and not late.
     if search.is_lagged(&found.fit)
-        && let Some([punctual, _]) = punctual_and_lagged(&data, rig, &search.nominal, encoder_variance)
+        && let Some([punctual, _]) = late
     {
-        // What else is missing hid that the effort is lagged and not late.
-        search = Search { is_asked: true, ..search_from(data, rig, punctual) };
+        search = asked(punctual);
         found = chosen(&search);
     }
     say("the drive: what is left");

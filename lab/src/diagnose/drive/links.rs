@@ -93,12 +93,12 @@ fn found_on(data: &Data<'_>, base: &Fit, side: Side) -> Vec<Fit> {
 fn led(data: &Data<'_>, starts: Vec<Fit>) -> Vec<Fit> {
     let plays: Vec<Fit> = starts.iter().filter(|fit| fit.model.has("backlash")).cloned().collect();
     let quietest = plays.iter().map(|fit| fit.noise.ln_disturbance).fold(f64::INFINITY, f64::min);
-    let quiet = plays.iter().filter(|fit| fit.noise.ln_disturbance <= quietest).cloned();
-    let suited = plays.clone().into_par_iter().map(|mut fit| {
+    let quiet = plays.iter().filter(|fit| fit.noise.ln_disturbance <= quietest).cloned().collect();
+    let suited = plays.into_par_iter().map(|mut fit| {
         fit.log_likelihood = search_noise(data, &fit.model, &fit.values, &mut fit.noise);
         fit
     });
-    let chosen = [likeliest(quiet.collect()), likeliest(suited.collect())].concat();
+    let chosen = [likeliest(quiet), likeliest(suited.collect())].concat();
     let led: Vec<Fit> = chosen.into_par_iter().map(|play| likelier_around(data, &play)).collect();
     [starts, led].concat()
 }

@@ -161,7 +161,6 @@ fn a_play_of_two_hundred_encoder_steps_is_named_with_its_gap() {
     assert!((left / outcome.expected_noise - 1.0).abs() < 0.3, "{left} {}", outcome.expected_noise);
 }
 
-/// A gear that swings at 25 Hz on its flanks: a search with a louder disturbance ends at another gap, or in a lag of the effort.
 /// The same twenty times as slow, 50 rows a second, as of a crane: its flanks swing at 3.6 Hz.
 #[test]
 fn a_play_of_a_slow_machine_is_named_with_its_gap() {
@@ -181,6 +180,7 @@ fn a_play_of_a_slow_machine_is_named_with_its_gap() {
     assert!((gap / 2e-3 - 1.0).abs() < 0.1, "{gap}");
 }
 
+/// A gear that swings at 25 Hz on its flanks: a search with a louder disturbance ends at another gap, or in a lag of the effort.
 #[test]
 fn a_play_with_soft_flanks_is_named_with_its_gap_and_its_stiffness() {
     let link = TestLink { stiffness: 4700.0, damping: 2.2, play: 3e-3, load_share: 0.55, friction_share: 0.4 };
