@@ -9,6 +9,7 @@ use super::own_values::{moved_values, own_values};
 use super::projection::{Projection, Promise};
 use super::rest::Rest;
 use super::search::{Search, sorted_names};
+use super::worth::free;
 use crate::diagnose::term::Term;
 
 /// Promises of a round that are fitted.
@@ -85,16 +86,49 @@ impl Search<'_> {
     /// `fit` with the effect of term `at` by another of its laws, the one that every row makes likeliest, where that is likelier than its own: means of rows, which
     /// a law is chosen by, may tell two laws of one effect apart the other way about.
     pub(super) fn in_another_form(&self, fit: &Fit, at: usize) -> Option<Fit> {
+        let rest = Rest::of(&self.data, fit);
+        let own = self.price(fit, &rest);
+        let others = self.other_forms(fit, at, &self.without(fit, at));
+        self.cheapest(others, &rest).filter(|other| self.price(other, &rest) < own - LEAST_GAIN)
+    }
+
+    /// `fit` with the effect of term `at` by each of its other laws that promise anything beside `less`, the rest of it, fitted to the end.
+    fn other_forms(&self, fit: &Fit, at: usize, less: &Fit) -> Vec<Fit> {
         let own = fit.model.terms[at];
-        let less = self.without(fit, at);
-        let promises = self.promises(&less, &|term| term.name() == own.name() && !term.is(&own));
+        let promises = self.promises(less, &|term| term.name() == own.name() && !term.is(&own));
         let quick = promises.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
         let full = self.to_the_end(self.coarsely_polished(quick));
+        full.into_iter().filter(|other| self.is_admissible(other)).collect()
+    }
+
+    /// The one of `fits` with the least price.
+    fn cheapest(&self, fits: Vec<Fit>, rest: &Rest) -> Option<Fit> {
+        fits.into_iter().min_by(|a, b| self.price(a, rest).total_cmp(&self.price(b, rest)))
+    }
+
+    /// `fit` with each of its effects by the law of it that every row makes likeliest beside the others. A law with more values stands only where it gains over
+    /// one with fewer what values have to gain anywhere: in quick fits a law that is linear in its values is at its end where others are not.
+    pub(super) fn in_likeliest_forms(&self, mut fit: Fit) -> Fit {
+        for at in self.nominal.model.terms.len()..fit.model.terms.len() {
+            if let Some(other) = self.in_likeliest_form(&fit, at) {
+                fit = with_last_at(other, at);
+            }
+        }
+        fit
+    }
+
+    /// The same for term `at` alone; `None` where its own law stands. An effect that is worth having by its own law alone keeps it.
+    fn in_likeliest_form(&self, fit: &Fit, at: usize) -> Option<Fit> {
         let rest = Rest::of(&self.data, fit);
-        let priced =
-            full.into_iter().filter(|other| self.is_admissible(other)).map(|other| (self.price(&other, &rest), other));
-        let (price, best) = priced.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
-        (price < self.price(fit, &rest) - LEAST_GAIN).then_some(best)
+        let less = self.without(fit, at);
+        let is_as_good = |other: &Fit| {
+            let gain = self.price(fit, &rest) - self.price(other, &rest);
+            gain > LEAST_GAIN.value()
+                || (free(other) < free(fit) && gain > -LEAST_GAIN.value() && self.is_worth(other, &less))
+        };
+        let mut others = self.other_forms(fit, at, &less);
+        others.retain(is_as_good);
+        self.cheapest(others, &rest)
     }
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do
@@ -131,6 +165,15 @@ impl Search<'_> {
         fits.truncate(POLISHED);
         fits.par_iter().map(|fit| self.data.fit(&fit.model, &fit.values, Effort::FULL)).collect()
     }
+}
+
+/// `fit` with its last term in the place of term `at`, which with all behind it goes one further: of effects that a curve could replace the first one goes, whichever law it has.
+fn with_last_at(mut fit: Fit, at: usize) -> Fit {
+    let [place, last] = [at, fit.model.terms.len() - 1].map(|term| fit.model.first_value_of(term));
+    let count = fit.values.len() - last;
+    fit.values[place..].rotate_right(count);
+    fit.model.terms[at..].rotate_right(1);
+    fit
 }
 
 /// The first of each set of names.

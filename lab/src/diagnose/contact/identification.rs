@@ -324,6 +324,25 @@ mod tests {
         assert!((softening * length - 1.0).abs() < 0.05, "{softening} 1/m");
     }
 
+    /// A foam that yields in the middle of its way and stiffens beyond it: no power and no exponential does both, and layers would be three.
+    #[test]
+    fn a_spring_that_softens_before_it_hardens_is_one_spring() {
+        let (way, [quadratic, cubic]) = (8e-3, [-1.6, 1.0]);
+        let bend = |x: f64| 300.0 * x.max(0.0) * (quadratic + cubic * x / way) * x / way;
+        let trials = || [1, 2].map(|seed| TestContact::PLAIN.trial_with(seed, bend)).to_vec();
+        let outcome =
+            identify(trials(), &trials(), &TestContact::nominal(), Circumstances::default(), &|_| {}).unwrap();
+        assert_eq!((names(&outcome), outcome.verdict), (vec!["nonlinear_stiffness"], Verdict::Explained));
+        let at = outcome.chosen.model.first_value_of(0);
+        for (place, truth) in [(at, 300.0 * quadratic / way), (at + 1, 300.0 * cubic / way.powi(2))] {
+            let ([low, high], value) = (outcome.intervals[place], outcome.chosen.values[place]);
+            // A 95 % interval, widened by a half: values of one draw.
+            let slack = 0.5 * (high - low);
+            assert!(low - slack < truth && truth < high + slack, "{value} for {truth}: {low} to {high}");
+            assert!((value / truth - 1.0).abs() < 0.05, "{value} for {truth}");
+        }
+    }
+
     #[test]
     fn a_surface_that_breathes_is_one_effect_and_no_stiffness_that_varies() {
         // A breath of 0.35 Hz and 2 mm as the fourth power of a cosine, in a phase of its own in each trial; the tool goes at 0.64 Hz.

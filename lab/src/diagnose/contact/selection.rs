@@ -74,8 +74,11 @@ impl Search<'_> {
         let fit = self.exchanged(fit, say);
         let fit = self.weigh_by(fit);
         let fit = self.pruned(fit);
+        let fit = self.in_likeliest_forms(fit);
         sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         let fit = self.surviving(fit, &sets);
+        // What is not told from the simplest is an alternative to it, the likeliest of all, too.
+        sets.push(fit.clone());
         let fit = self.simplest(fit, &sets);
         let fit = self.without_times(fit, &sets);
         let simple = fit.model.clone();

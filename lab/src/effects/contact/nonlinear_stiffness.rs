@@ -66,12 +66,12 @@ static SPEC: EffectSpec = EffectSpec {
         },
         Form {
             name: "asymmetric",
-            equation: "spring = K x + quadratic x^2 + cubic x^3, of a clamped contact: stiffer one way than the other",
+            equation: "spring = K x + quadratic x^2 + cubic x^3: of a clamped contact stiffer one way than the other, of a pressed one softer before it is stiffer",
             parameters: &[
                 Parameter::new(
                     "quadratic",
                     Word::new("N/m^2", "N m/rad^2"),
-                    "above zero stiffer under pressure, below it under tension",
+                    "above zero stiffer the deeper it is pressed and softer under tension, below it the other way round",
                     f64::NEG_INFINITY,
                     f64::INFINITY,
                 ),
@@ -115,7 +115,6 @@ impl Effect for NonlinearStiffness {
             }
             form::EXPONENTIAL => per_depth(&[-1.0, -0.3, 0.3, 1.0, 2.5]),
             form::HYPERBOLIC => per_depth(&[0.3, 1.0, 4.0]),
-            form::ASYMMETRIC if !scene.is_bilateral => Vec::new(),
             form::ASYMMETRIC => {
                 let [first, second] = [1, 2].map(|power| 0.1 * scene.stiffness / scene.depth.powi(power));
                 vec![Start::sized(&[first, second], &[0, 1])]
