@@ -86,24 +86,21 @@ impl Search<'_> {
     /// `fit` with the effect of term `at` by another of its laws, the one that every row makes likeliest, where that is likelier than its own: means of rows, which
     /// a law is chosen by, may tell two laws of one effect apart the other way about.
     pub(super) fn in_another_form(&self, fit: &Fit, at: usize) -> Option<Fit> {
-        let rest = Rest::of(&self.data, fit);
-        let own = self.price(fit, &rest);
-        let others = self.other_forms(fit, at, &self.without(fit, at));
-        self.cheapest(others, &rest).filter(|other| self.price(other, &rest) < own - LEAST_GAIN)
+        self.best_form(fit, at, &|gain, _, _| gain > LEAST_GAIN.value())
     }
 
-    /// `fit` with the effect of term `at` by each of its other laws that promise anything beside `less`, the rest of it, fitted to the end.
-    fn other_forms(&self, fit: &Fit, at: usize, less: &Fit) -> Vec<Fit> {
+    /// `fit` with the effect of term `at` by the cheapest of its other laws, each fitted to the end on every row, that `is_enough`: by what it gains over `fit`, nats at the
+    /// price of all values, by itself, and by the rest of `fit` without the effect.
+    fn best_form(&self, fit: &Fit, at: usize, is_enough: &dyn Fn(f64, &Fit, &Fit) -> bool) -> Option<Fit> {
         let own = fit.model.terms[at];
-        let promises = self.promises(less, &|term| term.name() == own.name() && !term.is(&own));
+        let less = self.without(fit, at);
+        let promises = self.promises(&less, &|term| term.name() == own.name() && !term.is(&own));
         let quick = promises.par_iter().map(|(promise, base)| self.with_effect(promise, base)).collect();
         let full = self.to_the_end(self.coarsely_polished(quick));
-        full.into_iter().filter(|other| self.is_admissible(other)).collect()
-    }
-
-    /// The one of `fits` with the least price.
-    fn cheapest(&self, fits: Vec<Fit>, rest: &Rest) -> Option<Fit> {
-        fits.into_iter().min_by(|a, b| self.price(a, rest).total_cmp(&self.price(b, rest)))
+        let rest = Rest::of(&self.data, fit);
+        let gain = |other: &Fit| self.price(fit, &rest) - self.price(other, &rest);
+        let good = full.into_iter().filter(|other| self.is_admissible(other) && is_enough(gain(other), other, &less));
+        good.max_by(|a, b| gain(a).total_cmp(&gain(b)))
     }
 
     /// `fit` with each of its effects by the law of it that every row makes likeliest beside the others. A law with more values stands only where it gains over
@@ -119,16 +116,10 @@ impl Search<'_> {
 
     /// The same for term `at` alone; `None` where its own law stands. An effect that is worth having by its own law alone keeps it.
     fn in_likeliest_form(&self, fit: &Fit, at: usize) -> Option<Fit> {
-        let rest = Rest::of(&self.data, fit);
-        let less = self.without(fit, at);
-        let is_as_good = |other: &Fit| {
-            let gain = self.price(fit, &rest) - self.price(other, &rest);
-            gain > LEAST_GAIN.value()
-                || (free(other) < free(fit) && gain > -LEAST_GAIN.value() && self.is_worth(other, &less))
-        };
-        let mut others = self.other_forms(fit, at, &less);
-        others.retain(is_as_good);
-        self.cheapest(others, &rest)
+        self.best_form(fit, at, &|gain, other, less| {
+            let is_simpler = free(other) < free(fit) && self.is_worth(other, less);
+            gain > if is_simpler { -LEAST_GAIN.value() } else { LEAST_GAIN.value() }
+        })
     }
 
     /// The best of `quick`, one of each set of names, to the end. They are compared at the price of their values: of several forms that do

@@ -77,7 +77,7 @@ impl Search<'_> {
         let fit = self.in_likeliest_forms(fit);
         sets.par_iter_mut().for_each(|fit| *fit = self.data.again(fit));
         let fit = self.surviving(fit, &sets);
-        // What is not told from the simplest is an alternative to it, the likeliest of all, too.
+        // Where a simpler set takes its place, the likeliest one is an alternative to that.
         sets.push(fit.clone());
         let fit = self.simplest(fit, &sets);
         let fit = self.without_times(fit, &sets);
