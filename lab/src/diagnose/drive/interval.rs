@@ -5,11 +5,16 @@ use nalgebra::{DMatrix, DVector};
 use super::fit::Fit;
 use super::likelihood::Data;
 use super::linearisation::Linearisation;
+use super::model::index;
 use super::outcome::Outcome;
 use super::range::{Range, Step};
 use crate::diagnose::interval::{Clusters, NORMAL_97_5, spread_over_own_width};
 use crate::diagnose::jackknife::stretch_of_rows;
 use crate::diagnose::linalg::dot;
+
+/// Values whose ends are what is known of them, and not merely those of a search: an effort is recorded within a row of when it acts. Beside a lag, which
+/// does nearly the same, a delay that could be any would leave the lag unknown however much it takes.
+const CONFINED: [usize; 2] = [index::DELAY, index::AVERAGING];
 
 /// How far the values of a fit can be trusted.
 #[derive(Debug, Clone)]
@@ -36,7 +41,8 @@ pub fn intervals(data: &Data<'_>, fit: &Fit) -> Uncertainty {
     let known = |(range, value): (&Range, &f64)| {
         range.prior.map_or(0.0, |prior| (range.slope(*value) / prior.deviation).powi(2))
     };
-    let priors: Vec<f64> = ranges.iter().zip(&fit.values).map(known).collect();
+    let mut priors: Vec<f64> = ranges.iter().zip(&fit.values).map(known).collect();
+    CONFINED.iter().for_each(|at| priors[*at] = priors[*at].max(ranges[*at].uniform_precision()));
     let found = spread_over_own_width(&priors, rows, |apart| at.over_width(&fit.values, apart));
     let each = fit.values.iter().enumerate().map(|(at, value)| {
         let range = &ranges[at];
@@ -88,9 +94,26 @@ pub fn widen(outcome: &mut Outcome, changes: &[Vec<Vec<f64>>]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fit::{Effort, fit};
     use super::super::identification::identify;
-    use super::super::testing::{TestDrive, nominal};
+    use super::super::term::Term;
+    use super::super::testing::{TestDrive, nominal, search_over};
     use super::*;
+
+    /// A second of a lag of 1.5 ms before an encoder of 0.3 mm: a delay and a lag of the same length are one to it, and a delay lies within half a row. So the
+    /// lag is known to about a row, which is 1 ms, and not to everything that a search may try.
+    #[test]
+    fn a_lag_beside_a_delay_is_known_as_well_as_the_delay_is_confined() {
+        let drive = TestDrive { effort_lag_s: 1.5e-3, encoder: 3e-4, ..TestDrive::PLAIN };
+        let trials = [drive.trial(1.0, 6)];
+        let search = search_over(&trials, &drive);
+        let model = search.nominal.model.with(Term::EffortLag);
+        let values = [0.8, 4.0, 0.0, 0.0, 1.5e-3];
+        let lagged = fit(&search.data, &model, &values, search.nominal.noise, Effort::FULL);
+        let own = intervals(&search.data, &lagged).ends[lagged.model.values_of(0).start];
+        assert!(own[0] < 1.5e-3 && own[1] > 1.5e-3, "{own:?} {:?}", lagged.values);
+        assert!(own[0] > 0.5e-3 && own[1] < 2.5e-3, "{own:?} {:?}", lagged.values);
+    }
 
     /// A drive under a constant load of 1 N that is given a force whose zero is known to 0.1 N: so is the load then, and nothing else is known
     /// less for it.

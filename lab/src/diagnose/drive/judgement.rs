@@ -2,6 +2,7 @@
 
 use super::alternatives::{Alternative, MOST_ALTERNATIVES, alternatives};
 use super::asymmetric_friction::as_asymmetric;
+use super::candidates::is_likelier;
 use super::criteria::{LEAST_PART_OF_EFFORT, MOST_LEFT, OVER_NOISE, UNKNOWN_PART_OF_EFFORT, VALUES_MATTER};
 use super::expected_noise::{effort_noise, expected_noise};
 use super::fit::Fit;
@@ -12,7 +13,7 @@ use super::noise::Noise;
 use super::noise_at_rest::noise_at_rest;
 use super::outcome::Outcome;
 use super::ripples::as_one_cogging;
-use super::selection::{Chosen, Search};
+use super::selection::{Chosen, Search, is_believed};
 use super::term::Term;
 use super::validation::{Validated, validated};
 use crate::diagnose::verdict::Verdict;
@@ -29,7 +30,7 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
     );
     let given = missing_forces(data, &as_given(search), &common);
     let refitted = folds.held_out(data, &search.nominal, &common);
-    let mut stands = validated(search, &folds, &common, chosen.fit.clone());
+    let mut stands = standing(search, &folds, &common, &chosen);
     if let Some(one) = as_one_cogging(&stands.fit, search.nominal.model.terms.len()) {
         stands = validated(search, &folds, &common, one);
     }
@@ -66,6 +67,20 @@ pub fn judged(search: &Search<'_>, chosen: Chosen, seed: u64) -> Outcome {
         beyond_the_sensor: None,
         chosen: fit,
     }
+}
+
+/// What stands of what was chosen; or, where a term of that falls, of the likeliest set without it that is worth its terms beside what stands: a link that
+/// follows any rows is the likeliest of all, and what it took the place of was never asked.
+fn standing(search: &Search<'_>, folds: &Folds, common: &Noise, chosen: &Chosen) -> Validated {
+    let first = validated(search, folds, common, chosen.fit.clone());
+    let told = first.fit.model.names();
+    let fallen: Vec<&str> = chosen.fit.model.names().into_iter().filter(|name| !told.contains(name)).collect();
+    let is_more = |fit: &Fit| is_likelier(fit, &first.fit) && search.is_worth(fit, &first.fit);
+    let is_open = |fit: &&Fit| !fallen.iter().any(|name| fit.model.has(name)) && is_believed(fit) && is_more(fit);
+    let others = if fallen.is_empty() { &[][..] } else { &chosen.sets };
+    let likeliest = others.iter().filter(is_open).max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
+    let second = likeliest.map(|fit| validated(search, folds, common, search.pruned(fit.clone())));
+    second.filter(|second| is_more(&second.fit)).unwrap_or(first)
 }
 
 /// What the sensors alone would leave, root mean squares in N or N m.
@@ -139,9 +154,31 @@ fn verdict(search: &Search<'_>, fit: &Fit, missing: &[Vec<Vec<f64>>; 3], noise: 
 #[cfg(test)]
 mod tests {
     use super::super::identification::identify;
-    use super::super::testing::{TestDrive, nominal};
+    use super::super::law::Side;
+    use super::super::testing::{TestDrive, nominal, search_over, with_dry_friction};
     use super::*;
     use crate::diagnose::drive::named::named;
+
+    /// Dry friction, and a link in its place that is no stiffer than the rows show and is not told by them: the link falls, and the friction, which was not
+    /// chosen, stands. Where nothing else was tried nothing does.
+    #[test]
+    fn where_what_was_chosen_falls_the_likeliest_of_the_other_sets_is_asked() {
+        let drive = TestDrive { coulomb: 0.3, ..TestDrive::PLAIN };
+        let trials = [drive.trial(4.0, 6)];
+        let search = search_over(&trials, &drive);
+        let linked = search.polished(&Fit {
+            model: search.nominal.model.with(Term::Compliance(Side::Motor)),
+            values: [search.nominal.values.as_slice(), &[1e6, 100.0, 0.1, 0.5]].concat(),
+            ..search.nominal.clone()
+        });
+        let (folds, common) = (Folds::of(search.data.trials), search.nominal.noise);
+        let stands = |sets: Vec<Fit>| {
+            let chosen = Chosen { fit: linked.clone(), sets };
+            standing(&search, &folds, &common, &chosen).fit.model.names()
+        };
+        assert_eq!(stands(vec![linked.clone()]), [""; 0]);
+        assert_eq!(stands(vec![linked.clone(), with_dry_friction(&search)]), ["coulomb_friction"]);
+    }
 
     /// Friction of 0.4 N beside a load of 0.15 N is one of 0.55 N forward and 0.25 N backward; two effects say no more.
     #[test]

@@ -83,6 +83,12 @@ impl Range {
         }
     }
 
+    /// One over the variance, in squared steps, of a value of which its ends are all that is known: a uniform density. Zero where an end is infinite.
+    #[must_use]
+    pub fn uniform_precision(&self) -> f64 {
+        12.0 / self.steps_between(self.low, self.high).powi(2)
+    }
+
     /// Whether `value` lies at an end: what is found there is where the search ended, not what the recording shows.
     #[must_use]
     pub fn is_at_end(&self, value: f64) -> bool {

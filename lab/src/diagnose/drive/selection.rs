@@ -140,7 +140,6 @@ impl Search<'_> {
     /// `best`, or the likeliest of `sets` that is worth its terms where the inertia of `best` is not believed or a value ended where its
     /// search did; else no term.
     fn believed(&self, best: Fit, sets: &[Fit]) -> Fit {
-        let is_believed = |fit: &Fit| fit.model.has_believed_inertia(&fit.values) && !is_at_end(fit);
         if best.model == self.nominal.model || is_believed(&best) {
             return best;
         }
@@ -186,6 +185,12 @@ impl Search<'_> {
         sets.extend(polished.clone());
         polished.filter(|fit| self.is_worth(fit, &best)).unwrap_or(best)
     }
+}
+
+/// Whether the inertia of `fit` is believed and no value ended where its search did.
+#[must_use]
+pub fn is_believed(fit: &Fit) -> bool {
+    fit.model.has_believed_inertia(&fit.values) && !is_at_end(fit)
 }
 
 /// Whether a value of `fit` ended where its search did.
