@@ -1,6 +1,7 @@
 //! The contact by a model of its force: position in, force out.
 
 pub mod alternative;
+mod beside_force;
 mod beside_motion;
 pub mod broken_line;
 mod change_point;

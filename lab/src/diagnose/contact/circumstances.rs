@@ -20,6 +20,9 @@ const OF_BOTH_WAYS: [&str; 2] = ["hysteresis", "plastic_set"];
 const OF_RATE_AND_TIME: [&str; 4] =
     ["hunt_crossley_damping", "quadratic_damping", "stress_relaxation", "time_varying_stiffness"];
 
+/// The sensor's zero that moves: without free motion, too, as good a curve as those. A surface that is looked for deeper makes free motion of a part of the contact.
+const OF_TIME_IN_FREE_MOTION: [&str; 1] = ["force_drift"];
+
 impl Circumstances {
     /// Those of recordings of which the checks found what `is_found` by its code.
     #[must_use]
@@ -28,11 +31,13 @@ impl Circumstances {
         let (is_one_speed, is_one_way) = (is_found("one_speed") && is_found("no_hold"), is_found("one_way"));
         let of_both_ways = OF_BOTH_WAYS.into_iter().filter(|_| is_one_way);
         let of_rate = OF_RATE_AND_TIME.into_iter().filter(|_| is_one_way && is_one_speed);
+        let is_never_free = is_found("never_free");
+        let of_zero = OF_TIME_IN_FREE_MOTION.into_iter().filter(|_| is_one_way && is_one_speed && is_never_free);
         let of_range = ["force_saturation"].into_iter().filter(|_| is_found("force_held"));
         Self {
             is_one_speed,
-            is_never_free: is_found("never_free"),
-            unseen: of_both_ways.chain(of_rate).chain(of_range).collect(),
+            is_never_free,
+            unseen: of_both_ways.chain(of_rate).chain(of_zero).chain(of_range).collect(),
             refuted: Vec::new(),
         }
     }
@@ -52,14 +57,16 @@ mod tests {
     #[test]
     fn what_one_way_at_one_speed_does_not_show_is_not_looked_for() {
         let allowed = |codes: &[&str], name: &str| Circumstances::of(|code| codes.contains(&code)).allow(name);
-        for (codes, loops, rates) in [
-            (&[][..], true, true),
-            (&["one_speed", "no_hold"], true, true),
-            (&["one_way", "one_speed"], false, true),
-            (&["one_way", "one_speed", "no_hold"], false, false),
+        for (codes, loops, rates, zeros) in [
+            (&[][..], true, true, true),
+            (&["one_speed", "no_hold", "never_free"], true, true, true),
+            (&["one_way", "one_speed", "never_free"], false, true, true),
+            (&["one_way", "one_speed", "no_hold"], false, false, true),
+            (&["one_way", "one_speed", "no_hold", "never_free"], false, false, false),
         ] {
             assert!(OF_BOTH_WAYS.iter().all(|name| allowed(codes, name) == loops), "{codes:?}");
             assert!(OF_RATE_AND_TIME.iter().all(|name| allowed(codes, name) == rates), "{codes:?}");
+            assert!(OF_TIME_IN_FREE_MOTION.iter().all(|name| allowed(codes, name) == zeros), "{codes:?}");
             assert!(allowed(codes, "nonlinear_stiffness") && allowed(codes, "layered_stiffness"));
         }
         assert!(Circumstances::of(|code| code == "never_free").is_never_free);

@@ -76,8 +76,10 @@ thresholds! { "contact";
     LEAST_PART_PASSED = 0.1, "1", derived;
     /// Part of the force's range from which a spring's force is said to fall on the way in.
     LEAST_FALL = 0.02, "1", chosen;
-    /// Part of the force's range that either half of a single trial has to see: a stop that lies within one block is known to one half alone.
+    /// Part of the force's range that either half of blocks has to see: a stop that lies within one block is known to one half alone.
     SEEN_BY_BOTH = 0.8, "1", chosen;
+    /// The same of halves of trials: with less of it a law is asked for more than twice what it was taught.
+    SEEN_BY_EITHER_TRIALS = 0.5, "1", derived;
     /// Share of all wavelet coefficients that what the tool does has to have to be asked for the noise's power.
     LEAST_PART_OF_COEFFICIENTS = 0.05, "1", chosen;
     /// Stretches of free motion whose means are taken off a noise's power: it is known to a quarter by as many, the root of two over 32.

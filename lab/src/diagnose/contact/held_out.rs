@@ -1,13 +1,15 @@
 //! What a law leaves of rows that its values were not fitted to.
 
-use super::criteria::SEEN_BY_BOTH;
+use super::criteria::{SEEN_BY_BOTH, SEEN_BY_EITHER_TRIALS};
 use super::data::Data;
 use super::fit::{Effort, Fit};
 use super::model::{ContactModel, index};
+use super::trial::ContactTrial;
 use crate::diagnose::ends::ends;
+use crate::threshold::Threshold;
 
-/// Two halves of the rows: every other trial, or every other block of a single one, of which there are so many that both halves see every
-/// force. Each is fitted once and judged once.
+/// Two halves of the rows: every other trial, where both halves see the forces of the other, or every other block of each, of which there are so many that
+/// both do. Each is fitted once and judged once.
 pub struct Folds {
     /// For each half, whether each row of each trial belongs to it.
     halves: [Vec<Vec<bool>>; 2],
@@ -32,39 +34,58 @@ impl Folds {
     /// The halves of the rows of `data`.
     #[must_use]
     pub fn of(data: &Data<'_>) -> Self {
-        let doubled = std::iter::successors(Some(BLOCKS), |blocks| Some(2 * blocks));
-        let mut tried =
-            doubled.take_while(|blocks| *blocks < MOST_BLOCKS).map(|blocks| Self::with_blocks(data, blocks));
-        tried.find(|folds| folds.both_see(data)).unwrap_or_else(|| Self::with_blocks(data, MOST_BLOCKS))
-    }
-
-    /// Whether either half of a single trial sees most of the force's range.
-    fn both_see(&self, data: &Data<'_>) -> bool {
-        if data.trials.len() > 1 {
-            return true;
-        }
-        let rows = || data.trials[0].force.iter().zip(&data.weights[0]).zip(&self.halves[0][0]);
-        let range = |wanted: Option<bool>| {
-            let counted =
-                rows().filter(|((_, weight), is_first)| **weight > 0.0 && wanted.is_none_or(|half| half == **is_first));
-            let [low, high] = ends(counted.map(|((force, _), _)| *force));
-            high - low
+        let in_blocks = || {
+            let doubled = std::iter::successors(Some(BLOCKS), |blocks| Some(2 * blocks));
+            let mut tried =
+                doubled.take_while(|blocks| *blocks < MOST_BLOCKS).map(|blocks| Self::in_blocks(data, blocks));
+            tried.find(|folds| folds.both_see(data, SEEN_BY_BOTH)).unwrap_or_else(|| Self::in_blocks(data, MOST_BLOCKS))
         };
-        [true, false].into_iter().all(|half| range(Some(half)) >= SEEN_BY_BOTH * range(None))
+        Self::by_trials(data).unwrap_or_else(in_blocks)
     }
 
-    /// The same with `blocks` of a single trial.
+    /// The same with `blocks` of each trial, where trials are not halves.
     #[must_use]
     pub fn with_blocks(data: &Data<'_>, blocks: usize) -> Self {
-        let single = data.trials.len() == 1;
+        Self::by_trials(data).unwrap_or_else(|| Self::in_blocks(data, blocks))
+    }
+
+    /// Every other trial; `None` of a single one, and where one half does not see what the other has: a step to each of three depths teaches nothing of the
+    /// next, and no law is wrong for that.
+    fn by_trials(data: &Data<'_>) -> Option<Self> {
+        let folds = (data.trials.len() > 1).then(|| Self::halved(data, |number, _| number));
+        folds.filter(|folds| folds.both_see(data, SEEN_BY_EITHER_TRIALS))
+    }
+
+    /// Every other of so many blocks of each trial.
+    fn in_blocks(data: &Data<'_>, blocks: usize) -> Self {
+        Self::halved(data, |number, row| number + row / data.trials[number].len().div_ceil(blocks).max(1))
+    }
+
+    /// Halves of parts by turns: `part` numbers that of a row of a trial.
+    fn halved(data: &Data<'_>, part: impl Fn(usize, usize) -> usize) -> Self {
         let half = |wanted: usize| {
-            let trials = data.trials.iter().enumerate().map(|(number, trial)| {
-                let block = trial.len().div_ceil(blocks).max(1);
-                (0..trial.len()).map(|row| (if single { row / block } else { number }) % 2 == wanted).collect()
-            });
-            trials.collect()
+            let trials = data.trials.iter().enumerate();
+            let of_trial = |(number, trial): (usize, &ContactTrial)| {
+                (0..trial.len()).map(|row| part(number, row) % 2 == wanted).collect()
+            };
+            trials.map(of_trial).collect()
         };
         Self { halves: [half(0), half(1)] }
+    }
+
+    /// Whether either half sees so great a `part` of the force's range.
+    fn both_see(&self, data: &Data<'_>, part: Threshold) -> bool {
+        let rows = || data.trials.iter().zip(&data.weights).zip(&self.halves[0]);
+        let range = |wanted: Option<bool>| {
+            let counted = rows().flat_map(|((trial, weights), is_first)| {
+                let own = trial.force.iter().zip(weights).zip(is_first);
+                own.filter(|((_, weight), is_first)| **weight > 0.0 && wanted.is_none_or(|half| half == **is_first))
+                    .map(|((force, _), _)| *force)
+            });
+            let [low, high] = ends(counted);
+            high - low
+        };
+        [true, false].into_iter().all(|half| range(Some(half)) >= part * range(None))
     }
 
     pub(super) fn masked<'a>(&self, data: &Data<'a>, half: usize) -> Data<'a> {
@@ -128,7 +149,6 @@ pub fn rms(data: &Data<'_>, columns: &[Vec<f64>]) -> f64 {
 mod tests {
     use super::super::nominal::nominal_fit;
     use super::super::testing::{RATE, TestContact};
-    use super::super::trial::ContactTrial;
     use super::*;
     use crate::diagnose::term::Term;
 
@@ -180,5 +200,22 @@ mod tests {
             mean(&rows.map(|(_, rest)| *rest).collect::<Vec<_>>())
         };
         assert!((side(0) - 0.4).abs() < 0.03 && (side(1) + 0.4).abs() < 0.03, "{} and {} N", side(0), side(1));
+    }
+
+    /// Of two trials the second is pressed by 0.6 of the first's force, or by 0.4: the first would be asked of the second for more than twice what that saw,
+    /// and so each half is of both.
+    #[test]
+    fn a_trial_that_sees_less_than_half_of_the_force_is_no_half() {
+        let halves = |part: f64| {
+            let mut gentle = TestContact::PLAIN.recording(2);
+            gentle.position.iter_mut().chain(gentle.force.iter_mut().flatten()).for_each(|value| *value *= part);
+            let trials = [TestContact::PLAIN.trial(1), TestContact::seen(&gentle)];
+            let first = Folds::of(&Data::new(&trials)).is_first();
+            let of_first = |rows: &[bool]| rows.iter().filter(|is_first| **is_first).count() as f64 / rows.len() as f64;
+            let (strong, gentle) = first.split_at(trials[0].len());
+            [of_first(strong), of_first(gentle)]
+        };
+        assert_eq!(halves(0.6), [1.0, 0.0]);
+        assert!(halves(0.4).into_iter().all(|part| (part - 0.5).abs() < 0.05), "{:?}", halves(0.4));
     }
 }

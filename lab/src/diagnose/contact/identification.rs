@@ -1,6 +1,7 @@
 //! From the trials of a contact to what is told of it: the search for effects, a force of free motion taken off, and the judgement.
 
 use super::alternative::alternatives;
+use super::beside_force::BesideForce;
 use super::circumstances::Circumstances;
 use super::data::Data;
 use super::fit::{Effort, Fit};
@@ -77,7 +78,7 @@ impl Given<'_> {
     }
 
     /// What is told beside the parasitic `force` of `trials` and of means of more rows of the same, where that is likelier than the law `alone`.
-    fn beside(&self, force: ParasiticForce, trials: [&[ContactTrial]; 2], alone: &Fit) -> Option<Beside> {
+    fn beside(&self, force: ParasiticForce, trials: [&[ContactTrial]; 2], alone: &Fit) -> Option<BesideForce> {
         (self.say)("the contact: without the force of free motion");
         let without = trials.map(|trials| force.taken_off(trials));
         let found = self.searched(&without[0], &without[1]);
@@ -94,10 +95,10 @@ impl Given<'_> {
         found: (Search<'_>, Chosen),
         trials: &[ContactTrial],
         alone: &Fit,
-    ) -> Option<Beside> {
+    ) -> Option<BesideForce> {
         force
             .is_likelier(&found.0, &found.1.fit, trials, alone)
-            .then(|| Beside { outcome: self.concluded(found), force })
+            .then(|| BesideForce { outcome: self.concluded(found), force })
     }
 
     /// What is told of what was found.
@@ -114,34 +115,6 @@ impl Given<'_> {
         outcome.weights.clone_from(&search.data.weights);
         outcome.noise.clone_from(&search.data.noise);
         outcome.trials = trials.to_vec();
-        outcome
-    }
-}
-
-/// What is told of trials from which a parasitic force was taken off.
-struct Beside {
-    outcome: Outcome,
-    force: ParasiticForce,
-}
-
-impl Beside {
-    /// The same of the trials that hold the force, in the place of what was told of them `without` it: what is left is left by the rig file and by its refitted
-    /// values with the force in it, and by the answer with the force as a part of it.
-    fn instead_of(self, without: Outcome) -> Outcome {
-        let Self { mut outcome, force } = self;
-        let (weights, noise) = (outcome.weights.clone(), outcome.noise.clone());
-        let data = Data { trials: &outcome.trials, weights, noise, noise_factor: 1.0 };
-        let unseen = force.unseen(&data, &outcome.chosen, &Folds::of(&data));
-        let learned = outcome.learned.as_mut().map(Learned::residual_mut);
-        for residual in [&mut outcome.residuals[2]].into_iter().chain(learned) {
-            let rows = residual.iter_mut().flatten().zip(unseen.iter().flatten());
-            rows.for_each(|(rest, more)| *rest += more);
-        }
-        let [given, refitted, _] = without.residuals;
-        (outcome.residuals[0], outcome.residuals[1]) = (given, refitted);
-        outcome.trials = without.trials;
-        outcome.verdict = if outcome.named.is_empty() { Verdict::Unknown } else { Verdict::PartlyExplained };
-        outcome.parasitic = Some(force);
         outcome
     }
 }
