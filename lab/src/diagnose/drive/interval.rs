@@ -12,8 +12,8 @@ use crate::diagnose::interval::{Clusters, NORMAL_97_5, spread_over_own_width};
 use crate::diagnose::jackknife::stretch_of_rows;
 use crate::diagnose::linalg::dot;
 
-/// Values whose ends are what is known of them, and not merely those of a search: an effort is recorded within a row of when it acts. Beside a lag, which
-/// does nearly the same, a delay that could be any would leave the lag unknown however much it takes.
+/// Values whose ends are what is known of them, and not merely those of a search: beside a lag an effort acts within half a row of where it is recorded. The lag
+/// does nearly the same, and beside a delay that could be any it would have no interval, however much it takes.
 const CONFINED: [usize; 2] = [index::DELAY, index::AVERAGING];
 
 /// How far the values of a fit can be trusted.
