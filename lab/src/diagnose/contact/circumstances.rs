@@ -30,9 +30,9 @@ impl Circumstances {
         // Held at one depth a memory fades and a loop does not.
         let (is_one_speed, is_one_way) = (is_found("one_speed") && is_found("no_hold"), is_found("one_way"));
         let of_both_ways = OF_BOTH_WAYS.into_iter().filter(|_| is_one_way);
-        let of_rate = OF_RATE_AND_TIME.into_iter().filter(|_| is_one_way && is_one_speed);
-        let is_never_free = is_found("never_free");
-        let of_zero = OF_TIME_IN_FREE_MOTION.into_iter().filter(|_| is_one_way && is_one_speed && is_never_free);
+        let (is_one_stroke, is_never_free) = (is_one_way && is_one_speed, is_found("never_free"));
+        let of_rate = OF_RATE_AND_TIME.into_iter().filter(|_| is_one_stroke);
+        let of_zero = OF_TIME_IN_FREE_MOTION.into_iter().filter(|_| is_one_stroke && is_never_free);
         let of_range = ["force_saturation"].into_iter().filter(|_| is_found("force_held"));
         Self {
             is_one_speed,

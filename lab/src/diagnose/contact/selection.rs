@@ -150,15 +150,13 @@ mod tests {
         let nominal = nominal_fit(&Data::new(&trials), &TestContact::nominal());
         let [data, coarse] = [(), ()].map(|()| Data::new(&trials));
         let mut search = Search { nominal: nominal.clone(), data, coarse, circumstances: Circumstances::default() };
-        let leaving = |part: f64| Fit { energy: part * search.data.expected(), ..nominal.clone() };
+        let expected = search.data.expected();
+        let leaving = |part: f64| Fit { energy: part * expected, ..nominal.clone() };
         let [little, more] = [1.063, 1.065].map(leaving);
         assert!(search.is_at_noise(&little) && !search.is_at_noise(&more));
         // Found to be a tenth louder in power, of which the law leaves 1.063 times as much, or 0.96 times: 1.17 and 1.06 times what is stated.
         search.data.noise_factor = 1.1;
-        assert!(
-            !search.is_at_noise(&little)
-                && search.is_at_noise(&Fit { energy: little.energy * 0.96 / 1.063, ..little.clone() })
-        );
+        assert!(!search.is_at_noise(&little) && search.is_at_noise(&leaving(0.96)));
         search.data.noise_factor = 0.7;
         assert!(!search.is_at_noise(&little));
     }

@@ -81,7 +81,7 @@ mod tests {
     use super::super::testing::{FORCE_NOISE, TestContact};
     use crate::diagnose::verdict::Verdict;
 
-    /// A liquid bridge that pulls by a wave more and less than its law has it, of 1.25 or of 3 deviations of the sensor's noise. Where it leaves, in a tenth of the rows,
+    /// A liquid bridge that pulls by a wave more and less than its law has it, of 1.25 or of 3 deviations of the sensor's noise. Where it leaves, in 6 % of the rows,
     /// either is sure; the smaller leaves 6 % more power than the noise on the whole, which nobody knows that well.
     #[test]
     fn what_is_left_at_the_noise_is_nothing_more() {
