@@ -46,7 +46,7 @@ def drives():
         Case("cogging", lambda: Machine(plain(), force=wave), plain()),
         Case("backlash", lambda: Machine(gear), two),
         Case("transmission_compliance", lambda: Machine(belt), two),
-        Case("effort_saturation", lambda: Machine(plain(), command=lambda u, dt: np.clip(u, -1.5, 1.5)), plain()),
+        Case("effort_saturation", lambda: Machine(plain(), command=lambda u, dt: np.clip(u, -3.0, 3.0)), plain()),
         Case("effort_lag", lambda: Machine(plain(), command=lagged_command(0.004)), plain()),
     ]
 

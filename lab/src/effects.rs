@@ -27,6 +27,7 @@ pub use contact::learned_damping::{DAMPING_BY_SPEED, DAMPING_BY_SPEED_AND_DEPTH,
 pub use contact_simulator::{ActiveEffect, ContactSimulator};
 pub use contact_state::{ContactState, gate, ramp, rounded};
 pub use drive::cogging::{MOST_PATTERNS, waves};
+pub use drive::transmission_compliance::MOST_DAMPING_RATIO;
 pub use drive_state::DriveState;
 pub use effect_spec::{EffectSpec, Form, Limit, Parameter, Place, Stage, key_of, slug};
 pub use excitation_stats::{ExcitationStats, FrequencySearch, Start, ToneWeight, geometric, linear};

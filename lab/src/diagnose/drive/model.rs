@@ -5,6 +5,7 @@ use super::law::DriveLaw;
 use super::range::Range;
 use super::scales::Scales;
 use super::term::Term;
+use crate::effects::MOST_DAMPING_RATIO;
 
 /// Terms beyond the nominal ones; the values are inertia, viscous friction, delay and averaging of the effort, then those of each term.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,6 +101,14 @@ impl Model {
     #[must_use]
     pub fn is_at_end(&self, values: &[f64]) -> bool {
         (0..self.terms.len()).any(|at| self.terms[at].is_at_end(&values[self.values_of(at)], &self.scales))
+            || self.is_dragged(values)
+    }
+
+    /// Whether motor and load are held together by a damper and no spring, as a wheel that slips.
+    fn is_dragged(&self, values: &[f64]) -> bool {
+        let Some(link) = self.law(values).link.filter(|link| link.play == 0.0) else { return false };
+        let motor = (1.0 - link.load_share) * values[index::INERTIA];
+        link.damping >= 2.0 * MOST_DAMPING_RATIO * (link.stiffness * motor).sqrt()
     }
 
     /// Where the factor of the given load stands among the values; `None` where no load is given.
@@ -160,6 +169,7 @@ impl Model {
 
 #[cfg(test)]
 mod tests {
+    use super::super::law::Side;
     use super::super::testing::SCALES;
     use super::*;
 
@@ -172,5 +182,22 @@ mod tests {
         assert!(found.iter().zip([0.2, 0.2, 0.1, 0.0, 0.0]).all(|(found, by_hand)| (found - by_hand).abs() < 1e-15));
         let delay = model.with(Term::EffortLag).ranges()[index::DELAY];
         assert_eq!((delay.low, delay.high), (-0.5 * SCALES.recorded_period_s, 0.0));
+    }
+
+    /// Of 0.8 kg with halves of 0.4 kg and 5 kN/m the damper of a ratio of 5 is 10 sqrt(5000 x 0.4) = 447.2 N s/m, as the effect has it.
+    #[test]
+    fn a_link_that_is_damped_more_than_its_effect_says_is_none() {
+        let is_link = |damping: f64, term: Term| {
+            let model = Model { terms: vec![term], scales: SCALES };
+            let own = if model.has("backlash") {
+                vec![5000.0, damping, 0.5, 1e-4, 0.5]
+            } else {
+                vec![5000.0, damping, 0.5, 0.5]
+            };
+            !model.is_at_end(&[vec![0.8, 4.0, 0.0, 0.0], own].concat())
+        };
+        assert!(is_link(447.0, Term::Compliance(Side::Motor)) && !is_link(447.5, Term::Compliance(Side::Motor)));
+        // Within a play the damper of its flanks is no value of the effect.
+        assert!(is_link(447.5, Term::Play(Side::Motor)));
     }
 }

@@ -120,7 +120,9 @@ fn usual_speed(trial: &DriveTrial) -> f64 {
     spans.map(|(x, t)| ((x[ROWS] - x[0]) / (t[ROWS] - t[0])).abs()).fold(0.0, f64::max)
 }
 
-fn deviation(values: &[f64]) -> f64 {
+/// Standard deviation of `values`, in their unit.
+#[must_use]
+pub fn deviation(values: &[f64]) -> f64 {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()

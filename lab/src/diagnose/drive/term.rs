@@ -87,6 +87,10 @@ const SHORTEST_PRESLIDING: f64 = 1e-6;
 /// Longest pitch of a ripple that turns: two a turn.
 const LONGEST_PITCH_RAD: f64 = std::f64::consts::PI;
 
+/// Ratio of the ends of a stiffness that may be none: of a deviation d of its logarithm, as its ends are told, they lie at exp(-1.96 d) and exp(1.96 d), and
+/// 1 - 1.96 d is zero at their ratio of e^2.
+const SPRINGLESS: f64 = std::f64::consts::E * std::f64::consts::E;
+
 /// Largest error of the factor of a load, in its deviations, that is still one of its values.
 const WORST_LOAD: f64 = 3.0;
 
@@ -229,15 +233,20 @@ impl Term {
     }
 
     /// Whether the 95 % interval of a value that makes it what it is, of those in `ends`, is all of the value's range: the recordings do not
-    /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923). Or that of a level or an excess of Stribeck friction
-    /// holds zero, where it is none (A. Wald, *Trans. Am. Math. Soc.* 54, 1943); parts of another friction stand for each other and are judged by
-    /// their likelihood alone.
+    /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923). Or that of a level or an excess of Stribeck friction, or of
+    /// the stiffness of a link ([`SPRINGLESS`]), holds zero, where it is none (A. Wald, *Trans. Am. Math. Soc.* 54, 1943): motor and load without a spring between
+    /// them are held by a damper, as of a wheel that slips. Parts of another friction stand for each other and are judged by their likelihood alone.
     #[must_use]
     pub fn is_undetermined(&self, ends: &[[f64; 2]], scales: &Scales) -> bool {
         let ranges = self.ranges(scales);
         self.telling(scales).iter().any(|at| {
             let ([low, high], range) = (ends[*at], &ranges[*at]);
-            low <= range.low && (high >= range.high || range.low == 0.0 && *self == Self::Stribeck)
+            let may_be_none = match self {
+                Self::Stribeck => low <= range.low && range.low == 0.0,
+                Self::Compliance(_) => *at == 0 && high >= SPRINGLESS * low,
+                _ => false,
+            };
+            may_be_none || low <= range.low && high >= range.high
         })
     }
 
@@ -385,6 +394,27 @@ mod tests {
         assert!(!Term::Coulomb.is_undetermined(&[[0.0, 0.3]], &SCALES));
     }
 
+    /// A stiffness that is known to a factor of three either way may be none: what holds motor and load together is a damper, as of a wheel that slips.
+    #[test]
+    fn a_link_whose_stiffness_may_be_none_is_not_shown() {
+        for side in [Side::Motor, Side::Load] {
+            let link = Term::Compliance(side);
+            let mut ends: Vec<[f64; 2]> = link.ranges(&SCALES).iter().map(|range| [range.low, range.high]).collect();
+            let stiffness = 10.0 * ends[0][0];
+            ends[2] = [0.4, 0.6];
+            let mut within_a_factor_of = |factor: f64| {
+                ends[0] = [stiffness / factor, stiffness * factor];
+                !link.is_undetermined(&ends, &SCALES)
+            };
+            assert!(
+                within_a_factor_of(1.1)
+                    && within_a_factor_of(2.7)
+                    && !within_a_factor_of(2.72)
+                    && !within_a_factor_of(9.0)
+            );
+        }
+    }
+
     /// Where the mass sits makes a link what it is; its damping and its friction do not.
     #[test]
     fn a_link_whose_share_of_the_mass_may_be_any_is_not_shown() {
@@ -405,7 +435,7 @@ mod tests {
         assert!(link.is_undetermined(&from_load, &SCALES));
         // From an end of the range to within it, something is told.
         let mut half = whole.clone();
-        half[0][0] *= 2.0;
+        half[0] = [2.0 * half[0][0], 4.0 * half[0][0]];
         half[2][1] *= 0.9;
         assert!(!link.is_undetermined(&half, &SCALES));
     }

@@ -17,8 +17,16 @@ const LINK_STIFFNESS: Parameter = Parameter::new(
     f64::INFINITY,
 );
 
-const DAMPING_RATIO: Parameter =
-    Parameter::new("damping_ratio", Word::same("1"), "of the link, one where it stops ringing", 0.0, 5.0);
+/// Largest damping ratio of a link: beyond it the damper alone acts within any time that a spring has, and what slips or is dragged along is no link.
+pub const MOST_DAMPING_RATIO: f64 = 5.0;
+
+const DAMPING_RATIO: Parameter = Parameter::new(
+    "damping_ratio",
+    Word::same("1"),
+    "of the link, one where it stops ringing",
+    0.0,
+    MOST_DAMPING_RATIO,
+);
 
 static SPEC: EffectSpec = EffectSpec {
     name: "transmission_compliance",
