@@ -234,7 +234,7 @@ impl Term {
 
     /// Whether the 95 % interval of a value that makes it what it is, of those in `ends`, is all of the value's range: the recordings do not
     /// show it (practical non-identifiability: A. Raue et al., *Bioinformatics* 25, 2009, 1923). Or that of a level or an excess of Stribeck friction, or of
-    /// the stiffness of a link ([`SPRINGLESS`]), holds zero, where it is none (A. Wald, *Trans. Am. Math. Soc.* 54, 1943): motor and load without a spring between
+    /// the stiffness of a link (`SPRINGLESS`), holds zero, where it is none (A. Wald, *Trans. Am. Math. Soc.* 54, 1943): motor and load without a spring between
     /// them are held by a damper, as of a wheel that slips. Parts of another friction stand for each other and are judged by their likelihood alone.
     #[must_use]
     pub fn is_undetermined(&self, ends: &[[f64; 2]], scales: &Scales) -> bool {
